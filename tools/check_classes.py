@@ -24,7 +24,6 @@ EXCEPTIONS = {
     'Pid': (5, 44, PINS),
     'Settings': (0, 33, SETTINGS),
     'Status': (0, 46, SETTINGS),
-    'Hal': (74, 1, 'the operations on one HAL segment, most of them one call of the core'),
     'Recorder': (42, 5, OVERLOADS),
 }
 

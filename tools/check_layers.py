@@ -60,6 +60,10 @@ NEVER = {
     'drivers/mesa/hostmot2': ('drivers/mesa/lbp16', 'drivers/mesa/ethernet', 'drivers/mesa/board'),
     'drivers/mesa/ethernet': ('drivers/mesa/board',),
 }
+# What only one folder may use.
+PRIVATE = {
+    'hal/core/detail': 'hal/core',
+}
 IN_SRC = tuple(room for room in MAY_USE if room not in ('drivers', 'programs', 'components', 'tests/support'))
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"')
 
@@ -101,6 +105,9 @@ def problem(source, target):
     user, used = room_of(source), room_of(target)
     if user is None or used is None:
         return None
+    for folder, owner in PRIVATE.items():
+        if is_in(target, folder) and not is_in(source, owner):
+            return f'only {owner} may use {folder}'
     for folder, others in NEVER.items():
         other = next((other for other in others if is_in(source, folder) and is_in(target, other)), None)
         if other:

@@ -38,7 +38,7 @@ NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|m
                        r'|/hal/capi/\w+\.cc$|halcompile/emit_(c|main|man)\.cc$|runtime/log\.cc$|reference_pages\.cc$|view/watch_model\.cc$')
 # Clients look for these words (docs/reference/compatibility.md), canon comments are rs274's output, and the compiler reads the others.
 NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is already running|^Machine configuration file is'
-                   r'|^; life of tools|^# What was answered|^there is no module $|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^(addf|setp) \S+ \S+$|^net \S+ \S+ => |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
+                   r'|^; life of tools|^# What was answered|^there is no module $|^the planner of a module$|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^(addf|setp) \S+ \S+$|^net \S+ \S+ => |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
 LANGUAGES = ('de', 'es')
 TOKEN = re.compile(r'''//[^\n]*|/\*.*?\*/|R"(\w*)\((.*?)\)\1"|"((?:[^"\\\n]|\\.)*)"|'(?:[^'\\\n]|\\.)+'|->|\w+|\s+|.''', re.S)
 ESCAPE = {'n': '\n', 't': '\t', '"': '"', '\\': '\\', "'": "'", 'r': '\r', '0': '\0', 'a': '\a'}
@@ -157,7 +157,7 @@ def texts(root):
     found.setdefault('called from {}', 'src/base/diagnostics/sink.cc')
     for kind in ('component', 'pin', 'parameter', 'signal', 'function', 'thread', 'alias'):
         for what in (f"there is no {kind} '{{}}'", f"there is {'an' if kind == 'alias' else 'a'} {kind} '{{}}' already", f"{kind} name '{{}}' has {{}} characters, 1 to {{}} are allowed"):
-            found[what] = 'src/hal/core/hal.cc'
+            found[what] = 'src/hal/core/detail/names.cc'
     # Of one word, or of words that programs read elsewhere.
     for what in ("program '{}' {}", "pin '{}'", 'TRUE, FALSE, 1 or 0', '0 to 5', 'Commands:', 'a {} takes {}'):
         found[what] = 'src/hal/script/commands.cc'

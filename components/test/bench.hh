@@ -31,7 +31,7 @@ class Bench {
 
     /// Loads threads with thread "t" of PERIOD_NS and runs `commands`, which add the functions.
     explicit Bench(const std::string &commands, std::int64_t period_ns = PERIOD_NS) : period_ns_(period_ns) {
-        hal::HalOptions options;
+        hal::InstanceOptions options;
         options.name = "component-test";
         options.scheduler = &clock;
         auto made = hal::LocalHost::create(options);
@@ -43,19 +43,19 @@ class Bench {
     }
 
     void run(const std::string &commands) { (void)session->run_text(commands, "test"); }
-    hal::Hal &hal() { return host->hal(); }
+    hal::Instance &hal() { return host->hal(); }
 
     /// Runs `periods` periods of the thread.
     void pass(int periods = 1) { clock.run_until(clock.now_ns() + periods * period_ns_); }
     /// Uses setp, or sets the signal when there is no such pin.
     void set(const std::string &name, double value) {
-        const auto pin = hal().get(name);
+        const auto pin = hal().values().get(name);
         ASSERT_TRUE(pin.has_value()) << name;
-        const Result<> result = hal().set(name, hal_value(pin->type, value));
+        const Result<> result = hal().values().set(name, hal_value(pin->type, value));
         ASSERT_TRUE(result.has_value()) << result.error().str();
     }
     double get(const std::string &name) {
-        const auto value = hal().get(name);
+        const auto value = hal().values().get(name);
         EXPECT_TRUE(value.has_value()) << name;
         return value ? value->as_number() : 0.0;
     }

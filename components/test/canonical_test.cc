@@ -38,14 +38,14 @@ TEST_F(SimParportTest, HasPinsAndParametersOfThePortWithTypeAndDirection) {
         expected[pin_of(i) + "-in-fake"] = {hal::Type::BIT, hal::Dir::IN};
     }
     std::map<std::string, Kind> pins;
-    for (const hal::PinInfo &pin : bench.hal().pins("parport.0.*")) {
+    for (const hal::PinInfo &pin : bench.hal().pins().list("parport.0.*")) {
         if (pin.owner == "sim_parport" && pin.name.find(".time") == std::string::npos) {
             pins[pin.name] = {pin.type, pin.dir};
         }
     }
     EXPECT_EQ(pins, expected);
     std::map<std::string, hal::Type> params;
-    for (const hal::ParamInfo &param : bench.hal().params("parport.0.pin-*")) {
+    for (const hal::ParamInfo &param : bench.hal().params().list("parport.0.pin-*")) {
         EXPECT_EQ(param.dir, hal::Dir::RW) << param.name;
         params[param.name] = param.type;
     }

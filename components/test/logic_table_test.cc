@@ -220,7 +220,7 @@ TEST(EnumModule, RefusesWhatIsNoEnum) {
     Bench bench("");
     bench.run("loadrt enum \"enums=X;a\"");
     EXPECT_NE(bench.output.errors.find("E or D"), std::string::npos) << bench.output.errors;
-    EXPECT_TRUE(bench.hal().pins("enum*").empty());
+    EXPECT_TRUE(bench.hal().pins().list("enum*").empty());
 }
 
 TEST(LegacyNames, FindPinsAndParametersBesideTheNewOnes) {
@@ -229,8 +229,8 @@ TEST(LegacyNames, FindPinsAndParametersBesideTheNewOnes) {
         "net a encoder.0.phase-A\nsetp filter-kalman.0.Rk 3");
     EXPECT_EQ(bench.get("pid.0.p-gain"), 12.0);
     EXPECT_EQ(bench.get("filter-kalman.0.rk"), 3.0);
-    EXPECT_EQ(bench.hal().pin("encoder.0.phase-a")->signal, "a");
-    for (const hal::PinInfo &pin : bench.hal().pins("*")) {
+    EXPECT_EQ(bench.hal().pins().find("encoder.0.phase-a")->signal, "a");
+    for (const hal::PinInfo &pin : bench.hal().pins().list("*")) {
         const bool has_upper = std::any_of(pin.name.begin(), pin.name.end(),
                                            [](unsigned char c) { return std::isupper(c) != 0; });
         EXPECT_FALSE(has_upper) << pin.name;

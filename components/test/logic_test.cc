@@ -39,8 +39,8 @@ TEST(Not, Inverts) {
 
 TEST(Logic, PersonalityChoosesInputsAndOutputs) {
     Bench bench("loadrt logic count=2 personality=0x1f03,0x102\naddf logic.0 t\naddf logic.1 t");
-    EXPECT_FALSE(bench.hal().pin("logic.0.in-03").has_value());
-    EXPECT_FALSE(bench.hal().pin("logic.1.or").has_value());
+    EXPECT_FALSE(bench.hal().pins().find("logic.0.in-03").has_value());
+    EXPECT_FALSE(bench.hal().pins().find("logic.1.or").has_value());
     for (int i = 0; i < 8; ++i) {
         bench.set("logic.0.in-00", i & 1);
         bench.set("logic.0.in-01", i >> 1 & 1);
@@ -57,8 +57,8 @@ TEST(Logic, PersonalityChoosesInputsAndOutputs) {
 
 TEST(Logic, LoadsInputsWithoutOutputs) {
     Bench bench("loadrt logic personality=0x3\naddf logic.0 t");
-    EXPECT_EQ(bench.hal().pins("logic.0.in-*").size(), 3U);
-    EXPECT_FALSE(bench.hal().pin("logic.0.and").has_value());
+    EXPECT_EQ(bench.hal().pins().list("logic.0.in-*").size(), 3U);
+    EXPECT_FALSE(bench.hal().pins().find("logic.0.and").has_value());
 }
 
 /// `and` of no inputs would be TRUE.
@@ -68,7 +68,7 @@ TEST(Logic, RejectsAPersonalityWithoutInputs) {
         bench.run(fmt::format("loadrt logic personality={}", personality));
         EXPECT_NE(bench.output.errors.find("of instance 0 needs 1 to 16 inputs"), std::string::npos)
             << bench.output.errors;
-        EXPECT_TRUE(bench.hal().pins("logic*").empty()) << personality;
+        EXPECT_TRUE(bench.hal().pins().list("logic*").empty()) << personality;
     }
 }
 
@@ -76,7 +76,7 @@ TEST(Lincurve, LoadsWithAnyNumberOfPoints) {
     for (const auto &[personality, points] :
          {std::pair{0, 2}, {1, 2}, {-1, 2}, {3, 3}, {16, 16}, {100, 16}}) {
         Bench bench(fmt::format("loadrt lincurve personality={}\naddf lincurve.0 t", personality));
-        EXPECT_EQ(bench.hal().params("lincurve.0.?-val-*").size(), 2U * static_cast<unsigned>(points))
+        EXPECT_EQ(bench.hal().params().list("lincurve.0.?-val-*").size(), 2U * static_cast<unsigned>(points))
             << personality;
     }
 }

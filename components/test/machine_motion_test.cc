@@ -285,7 +285,7 @@ TEST(MachineOutputs, StayNumbersWhenInputsAreNone) {
     };
     for (const auto &machine : machines) {
         Bench bench(std::string("loadrt ") + machine.load + "\naddf " + machine.function + " t");
-        for (const hal::PinInfo &pin : bench.hal().pins("*.enable")) {
+        for (const hal::PinInfo &pin : bench.hal().pins().list("*.enable")) {
             bench.set(pin.name, 1);
         }
         bench.pass(3);
@@ -296,7 +296,7 @@ TEST(MachineOutputs, StayNumbersWhenInputsAreNone) {
               "*fb-?",         "*.value",   "*current-vel", "*encoder-vel", "*commanded-speed",
               "*actual-speed", "*speed-in", "*.power",      "*.fb",         "*offset-in-?",
               "*.frequency"}) {
-            for (const hal::PinInfo &pin : bench.hal().pins(input)) {
+            for (const hal::PinInfo &pin : bench.hal().pins().list(input)) {
                 if (pin.dir == hal::Dir::IN && pin.type == hal::Type::FLOAT) {
                     bench.set(pin.name, std::nan(""));
                 }

@@ -116,18 +116,18 @@ TEST_P(ManPage, NamesEverythingThatTheModuleExports) {
                                          [&](const std::string &word) { return isNamed(word, name); });
         EXPECT_TRUE(present) << name << " is not in the page of " << module;
     };
-    for (const hal::PinInfo &pin : bench.hal().pins("*")) {
+    for (const hal::PinInfo &pin : bench.hal().pins().list("*")) {
         if (pin.owner == module && !pin.name.ends_with(".time")) {
             expect_named(pin.name);
         }
     }
-    for (const hal::ParamInfo &param : bench.hal().params("*")) {
+    for (const hal::ParamInfo &param : bench.hal().params().list("*")) {
         if (param.owner == module && !param.name.ends_with(".tmax") &&
             !param.name.ends_with(".tmax-increased")) {
             expect_named(param.name);
         }
     }
-    for (const hal::FunctInfo &function : bench.hal().functs()) {
+    for (const hal::FunctionInfo &function : bench.hal().functions().list()) {
         if (function.owner == module) {
             expect_named(function.name);
         }

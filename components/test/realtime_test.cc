@@ -24,8 +24,8 @@ std::string load_all() {
 }
 
 void add_all_functions(Bench &bench) {
-    for (const hal::FunctInfo &function : bench.hal().functs()) {
-        ASSERT_TRUE(bench.hal().add_function(function.name, "t").has_value()) << function.name;
+    for (const hal::FunctionInfo &function : bench.hal().functions().list()) {
+        ASSERT_TRUE(bench.hal().threads().add_function(function.name, "t").has_value()) << function.name;
     }
 }
 
@@ -48,7 +48,7 @@ TEST(EveryComponent, StandsAnyInput) {
     add_all_functions(bench);
     const double values[] = {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e300, -1.0, 0.0, 1.0, 4e9};
     for (const double value : values) {
-        for (const hal::PinInfo &pin : bench.hal().pins("*")) {
+        for (const hal::PinInfo &pin : bench.hal().pins().list("*")) {
             if (pin.dir == hal::Dir::OUT || pin.owner == "threads" || !pin.signal.empty()) {
                 continue;
             }

@@ -139,9 +139,10 @@ TEST(Carousel, HasTheSensorsOfItsEncoding) {
                             {"encoding=counts pockets=8", 4},
                             {"encoding=gray pockets=20 num_sense=5", 5}}) {
         Bench bench("loadrt carousel " + std::string(one.load));
-        EXPECT_TRUE(bench.hal().get("carousel.0.sense-" + std::to_string(one.pins - 1)).has_value())
+        EXPECT_TRUE(bench.hal().values().get("carousel.0.sense-" + std::to_string(one.pins - 1)).has_value())
             << one.load;
-        EXPECT_FALSE(bench.hal().get("carousel.0.sense-" + std::to_string(one.pins)).has_value()) << one.load;
+        EXPECT_FALSE(bench.hal().values().get("carousel.0.sense-" + std::to_string(one.pins)).has_value())
+            << one.load;
     }
     Bench bench("");
     bench.run("loadrt carousel encoding=single pockets=33");
@@ -236,11 +237,11 @@ TEST(Loadrt, AMissingMandatoryParameterIsAnErrorThatNamesIt) {
                                      {"watchdog", "num_inputs="},
                                      {"weighted_sum", "wsum_sizes="}}) {
         Bench bench("");
-        const std::size_t pins = bench.hal().pins().size();
+        const std::size_t pins = bench.hal().pins().list().size();
         bench.run("loadrt " + std::string(one.load));
         EXPECT_NE(bench.output.errors.find(one.parameter), std::string::npos)
             << one.load << ": " << bench.output.errors;
-        EXPECT_EQ(bench.hal().pins().size(), pins) << one.load;
+        EXPECT_EQ(bench.hal().pins().list().size(), pins) << one.load;
     }
 }
 

@@ -3,7 +3,7 @@
 
 #include "base/own_place.hh"
 #include "base/text.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "machine/config/loaded_config.hh"
 #include "messages/client/viewer.hh"
 #include "programs/doctor/boards.hh"

@@ -39,7 +39,7 @@ Result<std::vector<hal::view::LatencyFigures>> measure(const std::vector<hal::vi
     if (!done) {
         return std::unexpected(done.error());
     }
-    missing = (*host)->hal().realtime_missing();
+    missing = (*host)->hal().host_status().realtime_missing();
     sleep_s(seconds, stop);
     auto figures = hal::view::read_latency((*host)->hal(), threads);
     const Result<> ended = (*host)->shut_down();

@@ -13,7 +13,7 @@
 #include "base/memory_killer.hh"
 #include "base/options/command_line.hh"
 #include "base/own_place.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "hal/host/host_server.hh"
 
 namespace {

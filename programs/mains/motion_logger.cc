@@ -79,14 +79,16 @@ mw::Result<> run(const std::string &path) {
     if (!host.has_value()) {
         return std::unexpected(host.error());
     }
-    hal::Hal &hal = (*host)->hal();
-    const auto component = hal.new_component(NAME);
+    hal::Instance &hal = (*host)->hal();
+    const auto component = hal.components().create(NAME);
     if (!component.has_value()) {
         return std::unexpected(component.error());
     }
-    const auto reopen = hal.new_pin("motion-logger.reopen-log", hal::Type::BIT, hal::Dir::IO, *component);
-    const auto in_position = hal.new_pin("motion.in-position", hal::Type::BIT, hal::Dir::OUT, *component);
-    const auto block = hal.shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
+    const auto reopen =
+        hal.pins().create("motion-logger.reopen-log", hal::Type::BIT, hal::Dir::IO, *component);
+    const auto in_position =
+        hal.pins().create("motion.in-position", hal::Type::BIT, hal::Dir::OUT, *component);
+    const auto block = hal.memory().shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
     for (const Error *error : {reopen.has_value() ? nullptr : &reopen.error(),
                                in_position.has_value() ? nullptr : &in_position.error(),
                                block.has_value() ? nullptr : &block.error()}) {
@@ -101,11 +103,11 @@ mw::Result<> run(const std::string &path) {
     motion::StandIn stand_in(*channels, [&log](const std::string &line) { log.say(line); });
     channels->layout_bytes = sizeof(motion::Channels);
     channels->magic = motion::Channels::MAGIC;
-    if (auto ready = hal.set_ready(*component); !ready.has_value()) {
+    if (auto ready = hal.components().set_ready(*component); !ready.has_value()) {
         return ready;
     }
     constexpr timespec PERIOD{0, PERIOD_NS};
-    while (stop_signal == 0 && !hal.host_end().has_value()) {
+    while (stop_signal == 0 && !hal.host_status().end_reason().has_value()) {
         stand_in.step(monotonic_ns());
         // Pins may be linked meanwhile: reads the value's address each time.
         auto *const isReopening = static_cast<volatile bool *>(**reopen);

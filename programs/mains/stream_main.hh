@@ -15,7 +15,7 @@
 #include "base/options/letters.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::programs {
 
@@ -23,7 +23,7 @@ namespace mw::programs {
 inline int run_attached(const char *program,
                         const std::function<Result<>(volatile std::sig_atomic_t &)> &work) {
     catch_stop_signals();
-    const auto instance = hal::Hal::attach(hal::default_instance());
+    const auto instance = hal::Instance::attach(hal::default_instance());
     Result<> result;
     if (instance) {
         hal::set_process_instance(instance->get());

@@ -22,7 +22,7 @@
 #include "clients/publish/assembly/settings.hh"
 #include "clients/publish/mtconnect/service.hh"
 #include "clients/screen/server.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "programs/command_words.hh"
 #include "programs/commands.hh"
 

@@ -10,7 +10,7 @@
 #include "clients/nml/bridge/bridge.hh"
 #include "clients/nml/config/config_file.hh"
 #include "clients/nml/net/server.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "programs/command_words.hh"
 #include "programs/commands.hh"
 #include "programs/remote/remote_client.hh"

@@ -12,7 +12,7 @@
 #include "base/language/language.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::programs {
 namespace {

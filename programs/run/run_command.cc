@@ -10,7 +10,7 @@
 #include "base/output_relay.hh"
 #include "base/stop_signals.hh"
 #include "base/whole_path.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "machine/assembly/machine.hh"
 #include "machine/config/ini_parameters.hh"
 #include "machine/config/loaded_config.hh"

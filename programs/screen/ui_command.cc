@@ -20,7 +20,7 @@
 #include "clients/screen/api.hh"
 #include "clients/screen/descriptors.hh"
 #include "clients/screen/server.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "hal/host/host_client.hh"
 #include "programs/command_words.hh"
 #include "programs/commands.hh"

@@ -16,7 +16,7 @@
 #include "base/own_place.hh"
 #include "base/stop_signals.hh"
 #include "base/whole_path.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "machine/config/loaded_config.hh"
 #include "programs/command_words.hh"
 #include "programs/commands.hh"

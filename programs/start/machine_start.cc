@@ -14,7 +14,7 @@
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "base/whole_path.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "machine/journal/writer.hh"
 #include "messages/client/shown_message.hh"
 #include "programs/run/ui_filter.hh"

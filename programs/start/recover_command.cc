@@ -10,7 +10,7 @@
 #include "base/language/language.hh"
 #include "base/options/command_line.hh"
 #include "base/text.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "messages/client/client.hh"
 #include "messages/client/shown_message.hh"
 #include "programs/commands.hh"

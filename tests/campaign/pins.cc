@@ -7,10 +7,10 @@
 
 namespace mw::campaign {
 
-std::string MachinePins::bind(hal::Hal &hal, std::size_t num_joints) {
+std::string MachinePins::bind(hal::Instance &hal, std::size_t num_joints) {
     std::string missing;
     const auto find = [&](const std::string &name, hal::Type type) -> volatile void * {
-        const auto address = hal.address_of(name, type);
+        const auto address = hal.values().address_of(name, type);
         missing = address ? missing : name;
         return address ? *address : nullptr;
     };

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::campaign {
 
@@ -47,7 +47,7 @@ struct MachinePins {
     std::vector<volatile bool *> outputs;  ///< that can do work
 
     /// The name of a pin that is missing; empty when all are there. HAL files have been run: links move pins.
-    std::string bind(hal::Hal &hal, std::size_t num_joints);
+    std::string bind(hal::Instance &hal, std::size_t num_joints);
 };
 
 }  // namespace mw::campaign

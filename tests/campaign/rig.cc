@@ -77,7 +77,7 @@ std::string Rig::start() {
         return told("the INI file has errors");
     }
     loaded_->machine.task.parameter_file.clear();
-    hal::HalOptions options;
+    hal::InstanceOptions options;
     options.scheduler = &scheduler_;
     auto host = hal::LocalHost::create(options);
     if (!host) {

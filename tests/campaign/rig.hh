@@ -83,7 +83,7 @@ class Rig final : public machine::Machine {
     mailbox::Segment &mailbox() override { return side_->mailbox(); }
     task::Task &task() override { return side_->task(); }
     motion::Channels &channels() override { return side_->channels(); }
-    hal::Hal &hal() override { return host_->hal(); }
+    hal::Instance &hal() override { return host_->hal(); }
 
     const Sample &sample() const { return sample_; }
     const machine::MachineConfig &config() const { return loaded_->machine; }

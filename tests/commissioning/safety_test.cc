@@ -74,8 +74,8 @@ class SafetyTest : public ::testing::TestWithParam<Scene> {
     }
 
     Guide &guide() { return commissioner_->guide(); }
-    hal::Hal &hal() { return commissioner_->machine().hal(); }
-    double value(const char *pin) { return hal().get(pin)->as_number(); }
+    hal::Instance &hal() { return commissioner_->machine().hal(); }
+    double value(const char *pin) { return hal().values().get(pin)->as_number(); }
     double position() { return value("joint.0.pos-fb"); }
     bool isEnabled() { return value("joint.0.amp-enable-out") != 0; }
 
@@ -158,8 +158,8 @@ TEST_P(SafetyTest, AProgramThatHangsHasItsMachineSwitchedOff) {
 TEST_P(SafetyTest, ALostBoardIsAFault) {
     reach_motion();
     hold_for(cycles(0.3));
-    ASSERT_TRUE(hal().unlink("estop-chain.in1").has_value());
-    ASSERT_TRUE(hal().set("estop-chain.in1", hal::Value::of_bit(false)).has_value());
+    ASSERT_TRUE(hal().signals().unlink("estop-chain.in1").has_value());
+    ASSERT_TRUE(hal().values().set("estop-chain.in1", hal::Value::of_bit(false)).has_value());
     hold_for(cycles(0.5));
     ASSERT_TRUE(guide().isFaulted());
     // As the session does at a fault.

@@ -143,16 +143,16 @@ Result<std::string> World::prepare(const std::string &ini) {
 }
 
 void World::set(const std::string &pin, double value) {
-    const auto current = controller_->hal().get(pin);
+    const auto current = controller_->hal().values().get(pin);
     if (current.has_value()) {
         const bool bit = current->type == hal::Type::BIT;
-        static_cast<void>(
-            controller_->hal().set(pin, bit ? hal::Value::of_bit(value != 0) : hal::Value::of_float(value)));
+        static_cast<void>(controller_->hal().values().set(pin, bit ? hal::Value::of_bit(value != 0)
+                                                                   : hal::Value::of_float(value)));
     }
 }
 
 double World::get(const std::string &pin) const {
-    const auto value = controller_->hal().get(pin);
+    const auto value = controller_->hal().values().get(pin);
     return value.has_value() ? value->as_number() : 0;
 }
 

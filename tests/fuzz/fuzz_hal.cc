@@ -133,19 +133,19 @@ std::string made_of(const std::uint8_t *data, std::size_t size) {
     return text;
 }
 
-void make_component(Hal &hal) {
-    const int id = *hal.new_component("b", CompType::REALTIME);
-    (void)hal.new_pin("b.in0", Type::BIT, Dir::IN, id);
-    (void)hal.new_pin("b.in1", Type::BIT, Dir::IN, id);
-    (void)hal.new_pin("b.out", Type::BIT, Dir::OUT, id);
-    (void)hal.new_pin("b.io", Type::BIT, Dir::IO, id);
-    (void)hal.new_pin("b.value", Type::FLOAT, Dir::IN, id);
-    (void)hal.new_pin("b.word", Type::U32, Dir::IN, id);
-    (void)hal.new_param("b.gain", Type::FLOAT, Dir::RW, hal.allocate(8), id);
-    (void)hal.new_funct("b.read", [](void *, long) {}, nullptr, id);
-    (void)hal.new_funct("b.write", [](void *, long) {}, nullptr, id);
-    (void)hal.set_ready(id);
-    (void)hal.new_thread("t", 1000000);
+void make_component(Instance &hal) {
+    const int id = *hal.components().create("b", CompType::REALTIME);
+    (void)hal.pins().create("b.in0", Type::BIT, Dir::IN, id);
+    (void)hal.pins().create("b.in1", Type::BIT, Dir::IN, id);
+    (void)hal.pins().create("b.out", Type::BIT, Dir::OUT, id);
+    (void)hal.pins().create("b.io", Type::BIT, Dir::IO, id);
+    (void)hal.pins().create("b.value", Type::FLOAT, Dir::IN, id);
+    (void)hal.pins().create("b.word", Type::U32, Dir::IN, id);
+    (void)hal.params().create("b.gain", Type::FLOAT, Dir::RW, hal.memory().allocate(8), id);
+    (void)hal.functions().create("b.read", {[](void *, long) {}}, id);
+    (void)hal.functions().create("b.write", {[](void *, long) {}}, id);
+    (void)hal.components().set_ready(id);
+    (void)hal.threads().create("t", 1000000);
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
                                  ? made_of(data + 1, size - 1)
                                  : std::string(reinterpret_cast<const char *>(data) + 1, size - 1);
     mw::runtime::VirtualScheduler clock;
-    HalOptions options;
+    InstanceOptions options;
     options.name = "fuzz";
     options.scheduler = &clock;
     auto host = LocalHost::create(options, {});

@@ -64,7 +64,7 @@ struct Corpus : ::testing::Test {
     std::unique_ptr<LocalHost> host;
 
     Corpus() {
-        HalOptions options;
+        InstanceOptions options;
         options.name = "corpus" + std::to_string(::getpid());
         options.isShared = true;
         options.scheduler = &clock;
@@ -72,9 +72,9 @@ struct Corpus : ::testing::Test {
         auto made = LocalHost::create(options, {folder.path});
         EXPECT_TRUE(made) << made.error().str();
         host = std::move(*made);
-        EXPECT_TRUE(hal().new_thread("t", 1'000'000));
+        EXPECT_TRUE(hal().threads().create("t", 1'000'000));
     }
-    Hal &hal() { return host->hal(); }
+    Instance &hal() { return host->hal(); }
 
     /// Compiles a file of the corpus; its messages.
     std::string compile(const std::string &file, const std::string &words = "") {
@@ -98,25 +98,25 @@ struct Corpus : ::testing::Test {
     /// Puts functions into the thread and runs it for some periods.
     void cycle(const std::vector<std::string> &functions, int periods = 1) {
         for (const std::string &function : functions) {
-            const auto done = hal().add_function(function, "t");
+            const auto done = hal().threads().add_function(function, "t");
             EXPECT_TRUE(done) << done.error().str();
         }
-        EXPECT_TRUE(hal().start_threads());
+        EXPECT_TRUE(hal().threads().start());
         more(periods);
     }
     void more(int periods) { clock.run_until(clock.now_ns() + periods * 1'000'000LL); }
     double number(const std::string &name) {
-        const auto value = hal().get(name);
+        const auto value = hal().values().get(name);
         EXPECT_TRUE(value) << name;
         return value ? value->as_number() : -999;
     }
     void set(const std::string &name, const std::string &value) {
-        const auto done = hal().set(name, std::string_view(value));
+        const auto done = hal().values().set(name, std::string_view(value));
         EXPECT_TRUE(done) << done.error().str();
     }
     std::string pins(const std::string &glob) {
         std::string names;
-        for (const PinInfo &pin : hal().pins(glob)) {
+        for (const PinInfo &pin : hal().pins().list(glob)) {
             names += pin.name + " ";
         }
         return names;

@@ -20,8 +20,8 @@ TEST_F(Corpus, OneFunctionWithoutTheWord) {
 
 TEST_F(Corpus, SettersNewerTypesAndAPersonalityByOption) {
     ASSERT_EQ(load("setters.comp", {"personality=7"}), "ok");
-    EXPECT_EQ(hal().pin("setters.0.a")->type, Type::S32);
-    EXPECT_EQ(hal().pin("setters.0.b")->type, Type::U32);
+    EXPECT_EQ(hal().pins().find("setters.0.a")->type, Type::S32);
+    EXPECT_EQ(hal().pins().find("setters.0.b")->type, Type::U32);
     cycle({"setters.0"});
     EXPECT_EQ(number("setters.0.b"), 10);
     EXPECT_EQ(number("setters.0.many-1"), 1);
@@ -161,9 +161,9 @@ TEST_F(Corpus, HeadersAndWideTypes) {
     cycle({"incl.0", "wide.0", "tick.0.run-now"});
     EXPECT_EQ(number("incl.0.cos"), 1);
     EXPECT_EQ(number("wide.0.sum"), 999999999);
-    EXPECT_EQ(hal().get("wide.0.top")->as_u64(), ~std::uint64_t{0});
+    EXPECT_EQ(hal().values().get("wide.0.top")->as_u64(), ~std::uint64_t{0});
     EXPECT_EQ(number("tick.0.tick"), 1);
-    EXPECT_TRUE(hal().component("hal_tick"));
+    EXPECT_TRUE(hal().components().find("hal_tick"));
 }
 
 TEST_F(Corpus, KinematicsHomingAndPlannerModules) {
@@ -198,16 +198,16 @@ TEST_F(Corpus, AComponentThatMakesItsInstancesItself) {
 TEST_F(Corpus, PortsByValueAndByAddress) {
     ASSERT_EQ(load("portecho.comp"), "ok");
     for (const char *name : {"to", "from"}) {
-        ASSERT_TRUE(hal().new_signal(name, Type::PORT));
-        ASSERT_TRUE(hal().set_signal(name, std::string_view("32")));
+        ASSERT_TRUE(hal().signals().create(name, Type::PORT));
+        ASSERT_TRUE(hal().signals().set(name, std::string_view("32")));
     }
-    const int comp = *hal().new_component("user");
-    const auto in = hal().new_pin("user.in", Type::PORT, Dir::IN, comp);
-    const auto out = hal().new_pin("user.out", Type::PORT, Dir::OUT, comp);
-    ASSERT_TRUE(hal().link("user.out", "to"));
-    ASSERT_TRUE(hal().link("portecho.0.in", "to"));
-    ASSERT_TRUE(hal().link("portecho.0.out", "from"));
-    ASSERT_TRUE(hal().link("user.in", "from"));
+    const int comp = *hal().components().create("user");
+    const auto in = hal().pins().create("user.in", Type::PORT, Dir::IN, comp);
+    const auto out = hal().pins().create("user.out", Type::PORT, Dir::OUT, comp);
+    ASSERT_TRUE(hal().signals().link("user.out", "to"));
+    ASSERT_TRUE(hal().signals().link("portecho.0.in", "to"));
+    ASSERT_TRUE(hal().signals().link("portecho.0.out", "from"));
+    ASSERT_TRUE(hal().signals().link("user.in", "from"));
     const UseInstance use(&hal());
     ASSERT_TRUE(hal_port_write(static_cast<hal_port_t *>(**out), "abc", 3));
     cycle({"portecho.0"});

@@ -66,7 +66,7 @@ TEST_F(Halcompile, Programs) {
     const Program looking({folder.path / "cusr"});
     ::unsetenv("MILLWRIGHT_INSTANCE");
     const auto reaches = [&](const std::string &name, double least) {
-        const auto value = hal().get(name);
+        const auto value = hal().values().get(name);
         return value && value->as_number() >= least;
     };
     EXPECT_TRUE(isSoon([&] { return reaches("b.count", 3); }));
@@ -74,7 +74,7 @@ TEST_F(Halcompile, Programs) {
     EXPECT_TRUE(isSoon([&] { return reaches("cusr.seen", 10); }));
     EXPECT_EQ(number("usrinit.0.answer"), 42);
     EXPECT_EQ(number("usrinit.0.words"), 2) << "count= is taken out";
-    EXPECT_EQ(hal().component("usrcount")->type, CompType::USER);
+    EXPECT_EQ(hal().components().find("usrcount")->type, CompType::USER);
 }
 
 TEST_F(Halcompile, AProgramTakesCountOrNamesButNotBoth) {
@@ -86,7 +86,7 @@ TEST_F(Halcompile, AProgramTakesCountOrNamesButNotBoth) {
     ASSERT_EQ(::waitpid(refused.pid, &status, 0), refused.pid);
     refused.pid = 0;
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1);
-    EXPECT_FALSE(hal().component("usrcount"));
+    EXPECT_FALSE(hal().components().find("usrcount"));
 }
 
 TEST_F(Halcompile, PythonPrograms) {
@@ -98,7 +98,8 @@ TEST_F(Halcompile, PythonPrograms) {
         ::setenv("PYTHONPATH", MW_PYTHON_FOLDER, 1);
         const Program doubling({program});
         ::unsetenv("MILLWRIGHT_INSTANCE");
-        EXPECT_TRUE(isSoon([&] { return hal().component("pyusr") && hal().component("pyusr")->isReady; }));
+        EXPECT_TRUE(isSoon(
+            [&] { return hal().components().find("pyusr") && hal().components().find("pyusr")->isReady; }));
         set("pyusr.in", "4");
         EXPECT_TRUE(isSoon([&] { return number("pyusr.out") == 8; }));
     }

@@ -19,7 +19,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "kill_count.hh"
 #include "motion/interface/channels.hh"
 
@@ -61,18 +61,19 @@ std::string content(const fs::path &path) {
 
 /// Joins the machine's shared memory once its motion controller is there.
 struct Observer {
-    std::unique_ptr<hal::Hal> hal;
+    std::unique_ptr<hal::Instance> hal;
     motion::Channels *channels = nullptr;
 
     bool join(const std::string &instance, pid_t task) {
         const auto deadline = Clock::now() + std::chrono::seconds(30);
         while (Clock::now() < deadline && ::waitpid(task, nullptr, WNOHANG) == 0) {
             if (hal == nullptr) {
-                auto attached = hal::Hal::attach(instance);
+                auto attached = hal::Instance::attach(instance);
                 hal = attached.has_value() ? std::move(*attached) : nullptr;
             }
             if (hal != nullptr) {
-                const auto block = hal->shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
+                const auto block =
+                    hal->memory().shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
                 channels = block.has_value() ? static_cast<motion::Channels *>(*block) : nullptr;
                 if (channels != nullptr && channels->magic == motion::Channels::MAGIC) {
                     return true;

@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "kill_count.hh"
 #include "motion/interface/channels.hh"
 #include "runtime/process.hh"
@@ -81,17 +81,18 @@ class RealtimeDeath : public ::testing::Test {
     }
 
     /// Joins the HAL once the program moves; null when it never does.
-    std::unique_ptr<hal::Hal> join_moving(pid_t task) const {
-        std::unique_ptr<hal::Hal> hal;
+    std::unique_ptr<hal::Instance> join_moving(pid_t task) const {
+        std::unique_ptr<hal::Instance> hal;
         motion::Channels *channels = nullptr;
         const auto deadline = Clock::now() + std::chrono::seconds(60);
         while (Clock::now() < deadline && ::waitpid(task, nullptr, WNOHANG) == 0) {
             if (hal == nullptr) {
-                auto attached = hal::Hal::attach(instance);
+                auto attached = hal::Instance::attach(instance);
                 hal = attached ? std::move(*attached) : nullptr;
             }
             if (hal != nullptr && channels == nullptr) {
-                const auto block = hal->shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
+                const auto block =
+                    hal->memory().shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
                 channels = block ? static_cast<motion::Channels *>(*block) : nullptr;
             }
             motion::PublishedStatus::Copy status;
@@ -145,7 +146,7 @@ TEST_F(RealtimeDeath, AKilledRealtimeProcessEndsTheRunWithin50ms) {
         const pid_t task = start(true);
         const auto hal = join_moving(task);
         ASSERT_NE(hal, nullptr) << log();
-        const auto motmod = hal->component("motmod");
+        const auto motmod = hal->components().find("motmod");
         ASSERT_TRUE(motmod) << log();
         mw::testing::LatenessProbe probe;
         const auto begin = Clock::now();
@@ -174,7 +175,7 @@ TEST_F(RealtimeDeath, ACrashInRealtimeNamesTheFunctionAndItsComponent) {
     const auto hal = join_moving(task);
     ASSERT_NE(hal, nullptr) << log();
     const auto begin = Clock::now();
-    ASSERT_TRUE(hal->set("crasher.now", hal::Value::of_bit(true)));
+    ASSERT_TRUE(hal->values().set("crasher.now", hal::Value::of_bit(true)));
     EXPECT_GE(
         wait_for("function 'crasher.update' of component 'crasher' crashed in thread 'servo-thread'", begin),
         0.0)

@@ -4,7 +4,7 @@
 #include <deque>
 #include <iostream>
 
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "kill/started_machine.hh"
 
 namespace mw::kill {
@@ -104,20 +104,20 @@ TEST_F(KillRecovery, TheProgramGoesOnAtTheRightLineAndNothingHasToBeCleaned) {
 /// The kinematics may read the pin while the machine brakes.
 TEST_F(KillRecovery, TheToolOffsetStaysOnItsPinUntilTheRealtimeProcessEndsAndComesBackWithTheProgram) {
     constexpr double TOOL_2_LENGTH = 35, NO_PIN = -1;
-    const auto offset_now = [](const hal::Hal &hal) {
-        const auto value = hal.get("motion.tooloffset.z");
+    const auto offset_now = [](hal::Instance &hal) {
+        const auto value = hal.values().get("motion.tooloffset.z");
         return value.has_value() ? value->as_number() : NO_PIN;
     };
     ASSERT_NO_FATAL_FAILURE(start());
     ASSERT_NO_FATAL_FAILURE(switch_on());
     ASSERT_NO_FATAL_FAILURE(ask(messages::OpenProgram{folder / "p.ngc"}));
-    auto hal = hal::Hal::attach(instance);
+    auto hal = hal::Instance::attach(instance);
     ASSERT_TRUE(hal.has_value()) << hal.error().str();
     EXPECT_EQ(offset_now(**hal), 0);
     run = client->post(messages::RunProgram{}).value_or(0);
     static_cast<void>(cut_and_kill(6, std::chrono::milliseconds(300)));
     int seen = 0;
-    for (double z = 0; z != NO_PIN && !(*hal)->host_end().has_value(); ++seen) {
+    for (double z = 0; z != NO_PIN && !(*hal)->host_status().end_reason().has_value(); ++seen) {
         z = offset_now(**hal);
         ASSERT_TRUE(z == TOOL_2_LENGTH || z == NO_PIN) << z << ", look " << seen;
     }
@@ -126,7 +126,7 @@ TEST_F(KillRecovery, TheToolOffsetStaysOnItsPinUntilTheRealtimeProcessEndsAndCom
     client.reset();
 
     ASSERT_NO_FATAL_FAILURE(start());
-    hal = hal::Hal::attach(instance);
+    hal = hal::Instance::attach(instance);
     ASSERT_TRUE(hal.has_value()) << hal.error().str();
     static_cast<void>(client->read_status());
     EXPECT_EQ(client->status().offsets.tool.z(), 0);

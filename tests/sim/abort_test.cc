@@ -70,7 +70,7 @@ TEST_F(AbortTest, TheOnAbortCommandIsToldWhy) {
     cycles(10);
     start(LONG);
     cycles(500);
-    ASSERT_TRUE(machine_->hal().unlink("joint.0.motor-pos-fb").has_value());
+    ASSERT_TRUE(machine_->hal().signals().unlink("joint.0.motor-pos-fb").has_value());
     cycles(1000);
     const std::string all = messages();
     EXPECT_NE(all.find("because 3\n"), std::string::npos) << all;
@@ -95,7 +95,7 @@ TEST_F(AbortTest, TheOnAbortCommandCannotMoveOrStartAnything) {
         EXPECT_NE(all.find("on_abort.ngc:3"), std::string::npos) << all;
         cycles(2000);
         EXPECT_EQ(x(), rest);
-        EXPECT_EQ(machine_->hal().get("spindle.0.speed-out")->as_float(), 0.0);
+        EXPECT_EQ(machine_->hal().values().get("spindle.0.speed-out")->as_float(), 0.0);
         EXPECT_FALSE(pin("iocontrol.0.coolant-flood"));
         EXPECT_EQ(mdi("G90 G0 X1"), task::Progress::DONE) << messages();
         machine_.reset();
@@ -127,7 +127,7 @@ TEST_F(AbortTest, AMissingOnAbortProcedureIsToldAndNothingElse) {
 
 TEST_F(AbortTest, AFaultOfTheToolChangerIsInTheParameters) {
     switch_on_with("(debug,because %d#1: %d#5600 %d#5601)\n");
-    ASSERT_TRUE(machine_->hal().unlink("iocontrol.0.tool-changed").has_value());
+    ASSERT_TRUE(machine_->hal().signals().unlink("iocontrol.0.tool-changed").has_value());
     set_pin("iocontrol.0.toolchanger-reason", "7");
     start("G21 G90\nT2 M6\nG0 X5\nM2\n");
     cycles(2000);
@@ -188,7 +188,7 @@ TEST_F(AbortTest, AnAbortInAnyCycleLeavesAMachineThatGoesOn) {
         cycles(400);
         ASSERT_EQ(motion().carte_pos_cmd.z(), 1.0);
         ASSERT_FALSE(pin("motion.digital-out-00"));
-        ASSERT_NEAR(machine_->hal().get("spindle.0.speed-out")->as_float(), 0.0, 1e-9);
+        ASSERT_NEAR(machine_->hal().values().get("spindle.0.speed-out")->as_float(), 0.0, 1e-9);
         if (isRunning) {
             const std::string all = messages();
             ASSERT_EQ(all.find("because 8"), all.rfind("because")) << all;
@@ -219,13 +219,14 @@ TEST_F(AbortTest, AfterAnAbortTheCodesAreThoseOfTheExecutedBlock) {
     EXPECT_EQ(status.offsets.g5x_index, 1);
     EXPECT_EQ(status.offsets.tool.z(), 0);
     EXPECT_EQ(status.offsets.g92.y(), 0);
-    EXPECT_EQ(machine_->hal().get("motion.tooloffset.z")->as_float(), 0);
+    EXPECT_EQ(machine_->hal().values().get("motion.tooloffset.z")->as_float(), 0);
     EXPECT_EQ(mdi("(debug,%d#5220 %d#5212 %d#<_rpm>)"), task::Progress::DONE);
     EXPECT_EQ(messages(), "1 0 700\n");
     EXPECT_EQ(mdi("G0 X0 M3"), task::Progress::DONE);
     EXPECT_DOUBLE_EQ(x(), 0.0);
     cycles(100);
-    EXPECT_EQ(machine_->hal().get("spindle.0.speed-out")->as_float(), 700.0) << "S as displays show it";
+    EXPECT_EQ(machine_->hal().values().get("spindle.0.speed-out")->as_float(), 700.0)
+        << "S as displays show it";
 }
 
 }  // namespace

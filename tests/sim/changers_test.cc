@@ -30,7 +30,7 @@ class ChangerTest : public VirtualMachineTest {
     }
     bool pin(const std::string &name) const { return VirtualMachineTest::pin("iocontrol.0." + name); }
     int number(const std::string &name) const {
-        return static_cast<int>(machine_->hal().get("iocontrol.0." + name)->as_s32());
+        return static_cast<int>(machine_->hal().values().get("iocontrol.0." + name)->as_s32());
     }
     void set(const std::string &name, bool isOn) { set_pin("iocontrol.0." + name, isOn ? "1" : "0"); }
     geometry::Pose place() const { return motion().carte_pos_cmd; }
@@ -221,7 +221,7 @@ TEST_F(ChangerTest, LubricationFollowsTheEmergencyStopAndItsCommands) {
     set("lube_level", true);
     cycles(3);
     EXPECT_TRUE(state().hasOil);
-    *static_cast<volatile bool *>(*machine_->hal().address_of("chain", hal::Type::BIT)) = false;
+    *static_cast<volatile bool *>(*machine_->hal().values().address_of("chain", hal::Type::BIT)) = false;
     cycles(5);
     EXPECT_FALSE(pin("lube")) << "the chain";
 }

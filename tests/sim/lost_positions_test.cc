@@ -35,8 +35,8 @@ TEST_F(LostPositionsTest, AfterABoardWasNotFollowedTheMachineIsOffAndNotHomed) {
     // The board answers again. It is not an act of an operator at the machine.
     set_pin(board + "io_error", "FALSE");
     cycles(50);
-    ASSERT_TRUE(
-        machine_->hal().set_signal("watchdog-bit", "FALSE").has_value());  // the signal of watchdog.has_bit
+    ASSERT_TRUE(machine_->hal().signals().set("watchdog-bit", "FALSE").has_value());  // the signal of
+                                                                                      // watchdog.has_bit
     cycles(2000);
     expect_nothing_known("followed again");
 

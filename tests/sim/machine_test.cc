@@ -29,9 +29,9 @@ class MachineTest : public VirtualMachineTest {
 constexpr const char *LONG_MOVES = "G21 G90 G17 G61 F6000\nG1 X100\nY100\nX0\nY0\nM2\n";
 
 TEST_F(MachineTest, ProgramsReadHalItemsInTheCaseOfTheirNames) {
-    hal::Hal &hal = machine_->hal();
-    ASSERT_TRUE(hal.new_signal("Depth", hal::Type::FLOAT).has_value());
-    ASSERT_TRUE(hal.set_signal("Depth", "3").has_value());
+    hal::Instance &hal = machine_->hal();
+    ASSERT_TRUE(hal.signals().create("Depth", hal::Type::FLOAT).has_value());
+    ASSERT_TRUE(hal.signals().set("Depth", "3").has_value());
     EXPECT_EQ(mdi("G21 G0 X#<_hal[Depth]>"), task::Progress::DONE) << messages();
     EXPECT_DOUBLE_EQ(x(), 3);
     EXPECT_EQ(mdi("G0 X[1 + #<_hal[MOTION.ENABLE]>]"), task::Progress::DONE) << messages();
@@ -62,9 +62,9 @@ TEST_F(MachineTest, AnOpenChainDropsTheAmplifiersInTheSameServoCycle) {
     cycles(500);
     ASSERT_GT(motion().current_velocity, 50);
     ASSERT_TRUE(pin("joint.0.amp-enable-out"));
-    hal::Hal &hal = machine_->hal();
-    ASSERT_TRUE(hal.unlink("iocontrol.0.user-enable-out").has_value());
-    ASSERT_TRUE(hal.set_signal("estop-loop", "FALSE").has_value());
+    hal::Instance &hal = machine_->hal();
+    ASSERT_TRUE(hal.signals().unlink("iocontrol.0.user-enable-out").has_value());
+    ASSERT_TRUE(hal.signals().set("estop-loop", "FALSE").has_value());
     samples_.clear();
     cycles(1);
     ASSERT_EQ(samples_.size(), 1U);
@@ -128,39 +128,39 @@ TEST_F(MachineTest, AProgramErrorStopsTheSpindleToo) {
     EXPECT_EQ(finish(), task::Progress::FAILED);
     EXPECT_NE(messages().find("p.ngc:3:"), std::string::npos);
     cycles(3000);
-    EXPECT_EQ(machine_->hal().get("spindle.0.speed-out")->as_float(), 0.0);
+    EXPECT_EQ(machine_->hal().values().get("spindle.0.speed-out")->as_float(), 0.0);
     EXPECT_TRUE(motion().isEnabled);
 }
 
 TEST_F(MachineTest, FollowingErrorIsAFaultThatSwitchesOff) {
     start(LONG_MOVES);
     cycles(300);
-    ASSERT_TRUE(machine_->hal().unlink("joint.0.motor-pos-fb").has_value());
+    ASSERT_TRUE(machine_->hal().signals().unlink("joint.0.motor-pos-fb").has_value());
     cycles(1000);
     EXPECT_FALSE(motion().isEnabled);
     EXPECT_NE(messages().find("joint 0 following error"), std::string::npos);
 }
 
 TEST_F(MachineTest, AToolChangeWaitsForItsPin) {
-    ASSERT_TRUE(machine_->hal().unlink("iocontrol.0.tool-changed").has_value());
+    ASSERT_TRUE(machine_->hal().signals().unlink("iocontrol.0.tool-changed").has_value());
     start("G21 G90\nT2 M6\nG0 X5\nM2\n");
     cycles(4000);
     EXPECT_EQ(progress(run_), task::Progress::STARTED);
     EXPECT_EQ(machine_->task().status().task.waiting.what, task::WaitFor::TOOL_CHANGED);
-    ASSERT_TRUE(machine_->hal().set("iocontrol.0.tool-changed", "TRUE").has_value());
+    ASSERT_TRUE(machine_->hal().values().set("iocontrol.0.tool-changed", "TRUE").has_value());
     EXPECT_EQ(finish(), task::Progress::DONE);
     EXPECT_EQ(machine_->task().status().tool.in_spindle, 2);
 }
 
 /// A tool arm must not come before the spindle has its angle.
 TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime) {
-    ASSERT_TRUE(machine_->hal().unlink("spindle.0.is-oriented").has_value());  // a person answers
+    ASSERT_TRUE(machine_->hal().signals().unlink("spindle.0.is-oriented").has_value());  // a person answers
     const std::string program = "G21 G90\nM19 R90 Q2\nG0 X5\nM19 R180 Q2\nG0 X9\nM2\n";
     start(program);
     for (const double angle : {90.0, 180.0}) {
         cycles(600);
         EXPECT_TRUE(pin("spindle.0.orient"));
-        EXPECT_EQ(machine_->hal().get("spindle.0.orient-angle")->as_float(), angle);
+        EXPECT_EQ(machine_->hal().values().get("spindle.0.orient-angle")->as_float(), angle);
         EXPECT_EQ(machine_->task().status().task.waiting.what, task::WaitFor::SPINDLE_ORIENTED);
         EXPECT_EQ(x(), angle == 90.0 ? 0.0 : 5.0) << "moved before the spindle was there";
         set_pin("spindle.0.is-oriented", "TRUE");
@@ -181,7 +181,7 @@ TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime) {
 }
 
 TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle) {
-    ASSERT_TRUE(machine_->hal().unlink("spindle.0.is-oriented").has_value());  // a person answers
+    ASSERT_TRUE(machine_->hal().signals().unlink("spindle.0.is-oriented").has_value());  // a person answers
     start("G21 G90 G0 X0 Y0 Z5\nS1000 M3\nF3000 G87 X0 Y0 Z-3 R1 I2 J0 K-1\nG80\nM2\n");
     cycles(5000);
     EXPECT_EQ(machine_->task().status().task.waiting.what, task::WaitFor::SPINDLE_ORIENTED);

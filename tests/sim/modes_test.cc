@@ -147,7 +147,7 @@ TEST_F(ModesTest, HomingDuringAJogStopsTheJogAndHomes) {
 TEST_F(ModesTest, ToolOffsetsAreOnThePinsWhenG43IsDone) {
     for (const double z : {12.5, -3.25, 40.0}) {
         ASSERT_EQ(mdi(fmt::format("G21 G43.1 Z{}", z)), task::Progress::DONE) << messages();
-        EXPECT_DOUBLE_EQ(machine_->hal().get("motion.tooloffset.z")->as_number(), z);
+        EXPECT_DOUBLE_EQ(machine_->hal().values().get("motion.tooloffset.z")->as_number(), z);
     }
 }
 
@@ -157,7 +157,7 @@ TEST_F(ModesTest, TheSimulatedSpindleOrients) {
     for (const double angle : {90.0, 10.0, 270.0}) {
         ASSERT_EQ(mdi(fmt::format("S500 M19 R{} Q2", angle)), task::Progress::DONE) << messages();
         cycles(100);
-        const double turns = machine_->hal().get("spindle.0.revs")->as_number();
+        const double turns = machine_->hal().values().get("spindle.0.revs")->as_number();
         EXPECT_NEAR(std::remainder(turns * 360 - angle, 360.0), 0, 1.0);
     }
 }

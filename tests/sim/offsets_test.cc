@@ -30,7 +30,7 @@ class OffsetMachine : public VirtualMachineTest {
         ASSERT_NE(at, std::string::npos) << after;
         write("sim.ini", text.insert(at + after.size(), lines));
     }
-    double number(const std::string &name) const { return machine_->hal().get(name)->as_number(); }
+    double number(const std::string &name) const { return machine_->hal().values().get(name)->as_number(); }
 };
 
 TEST_F(OffsetMachine, ProgramsKnowNothingOfAnExternalOffset) {

@@ -177,8 +177,8 @@ TEST_F(PanelTest, ButtonsActWhoeverHasTheRightToOperate) {
 }
 
 TEST_F(PanelTest, ThePlannersPinsHoldWhatTheFileSaysAndActAtRestBeforeAnyProgramHasRun) {
-    EXPECT_EQ(machine_->hal().get("ini.traj-planner-type")->as_number(), 0);
-    EXPECT_EQ(machine_->hal().get("ini.traj-scurve-peak-scale")->as_number(), 1);
+    EXPECT_EQ(machine_->hal().values().get("ini.traj-planner-type")->as_number(), 0);
+    EXPECT_EQ(machine_->hal().values().get("ini.traj-scurve-peak-scale")->as_number(), 1);
     set_pin("ini.traj-planner-type", "1");
     cycles(20);
     EXPECT_EQ(machine_->task().planner_mode().type(), 1) << messages();
@@ -199,7 +199,7 @@ TEST_F(PanelTest, AToolIsChangedByHandAndTheProgramWaitsForIt) {
         hasAsked = pin("hal_manualtoolchange.change");
     }
     ASSERT_TRUE(hasAsked);
-    EXPECT_EQ(machine_->hal().get("hal_manualtoolchange.number")->as_number(), 1);
+    EXPECT_EQ(machine_->hal().values().get("hal_manualtoolchange.number")->as_number(), 1);
     cycles(50);
     EXPECT_EQ(x(), 0) << "moves while a person has hands in the machine";
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();

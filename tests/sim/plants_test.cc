@@ -12,7 +12,7 @@ class PlantsTest : public VirtualMachineTest {
   protected:
     void SetUp() override { switch_on_config(MW_SOURCE_DIR "/configs/sim/plants.ini"); }
     double pin(const std::string &name) {
-        const auto value = machine_->hal().get(name);
+        const auto value = machine_->hal().values().get(name);
         EXPECT_TRUE(value.has_value()) << name;
         return value.has_value() ? value->as_number() : NAN;
     }

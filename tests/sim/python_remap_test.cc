@@ -26,21 +26,21 @@ TEST_F(PythonRemapTest, AToolChangeThroughPythonAndAProcedureKeepsProgramOrder) 
     write("remap.py", "from stdglue import *\n");
     write("change.ngc", "o<change> sub\nG53 G0 Z40\nG53 G0 X-20\nM64 P1\no<change> endsub [1]\n");
     switch_on({"M6 modalgroup=6 prolog=change_prolog ngc=change epilog=change_epilog"});
-    ASSERT_TRUE(machine_->hal().unlink("iocontrol.0.tool-changed").has_value());
+    ASSERT_TRUE(machine_->hal().signals().unlink("iocontrol.0.tool-changed").has_value());
     start("G21 G90\nG0 X10\nT2 M6\n(debug,tool %d#5400)\nG0 X30\nM2\n");
-    for (int i = 0; i < 20000 && !machine_->hal().get("iocontrol.0.tool-change")->as_bit(); ++i) {
+    for (int i = 0; i < 20000 && !machine_->hal().values().get("iocontrol.0.tool-change")->as_bit(); ++i) {
         cycles(1);
     }
-    ASSERT_TRUE(machine_->hal().get("iocontrol.0.tool-change")->as_bit());
+    ASSERT_TRUE(machine_->hal().values().get("iocontrol.0.tool-change")->as_bit());
     EXPECT_TRUE(machine_->task().motion_status().isInPosition);
-    EXPECT_TRUE(machine_->hal().get("motion.digital-out-01")->as_bit())
+    EXPECT_TRUE(machine_->hal().values().get("motion.digital-out-01")->as_bit())
         << "the procedure ran before the change";
     EXPECT_EQ(progress(run_), task::Progress::STARTED);
     EXPECT_EQ(messages().find("tool 2"), std::string::npos) << "nothing after the change is read before it";
     const double waiting_at = x();
     cycles(2000);
     EXPECT_EQ(x(), waiting_at);
-    ASSERT_TRUE(machine_->hal().set("iocontrol.0.tool-changed", "TRUE").has_value());
+    ASSERT_TRUE(machine_->hal().values().set("iocontrol.0.tool-changed", "TRUE").has_value());
     EXPECT_EQ(finish(), task::Progress::DONE);
     EXPECT_EQ(machine_->task().status().tool.in_spindle, 2);
     EXPECT_DOUBLE_EQ(x(), 30.0);
@@ -58,7 +58,7 @@ TEST_F(PythonRemapTest, AYieldResumesWhenTheMachineIsThere) {
                       "    yield INTERP_EXECUTE_FINISH\n"
                       "    emccanon.MESSAGE('input %g' % self.params[5399])\n");
     switch_on({"M400 argspec=P py=there"});
-    ASSERT_TRUE(machine_->hal().set("motion.digital-in-00", "TRUE").has_value());
+    ASSERT_TRUE(machine_->hal().values().set("motion.digital-in-00", "TRUE").has_value());
     start("G21 G90\nG0 X10\nM400 P25\nM400 P5\nG0 X7\nM2\n");
     EXPECT_EQ(finish(), task::Progress::DONE);
     EXPECT_EQ(messages(), "machine at 25.0000\ninput 1\nmachine at 5.0000\ninput 1\n");

@@ -10,7 +10,7 @@ namespace {
 class SurfaceSpeedTest : public VirtualMachineTest {
   protected:
     void SetUp() override { switch_on(); }
-    double rpm() const { return machine_->hal().get("spindle.0.speed-out")->as_number(); }
+    double rpm() const { return machine_->hal().values().get("spindle.0.speed-out")->as_number(); }
     void say(const std::string &line) {
         ASSERT_EQ(mdi(line), task::Progress::DONE) << line << ": " << messages();
         cycles(20);

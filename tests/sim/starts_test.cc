@@ -42,7 +42,7 @@ class StartsTest : public VirtualMachineTest {
         }
         return false;
     }
-    double spindle() const { return machine_->hal().get("spindle.0.speed-out")->as_float(); }
+    double spindle() const { return machine_->hal().values().get("spindle.0.speed-out")->as_float(); }
     bool stands() const { return motion().isInPosition && motion().current_velocity == 0; }
 };
 

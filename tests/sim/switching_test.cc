@@ -66,7 +66,7 @@ class Switching : public VirtualMachineTest, public ::testing::WithParamInterfac
     }
     static int axis_of(char letter) { return static_cast<int>(std::string_view("XYZABCUVW").find(letter)); }
     bool isType(int type) {
-        const auto pin = machine_->hal().get(fmt::format("kinstype.is-{}", type));
+        const auto pin = machine_->hal().values().get(fmt::format("kinstype.is-{}", type));
         return pin.has_value() && pin->as_number() != 0;
     }
     void expect_identity() {

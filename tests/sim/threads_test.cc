@@ -73,7 +73,7 @@ class ThreadsTest : public VirtualMachineTest {
     void cycle() {
         cycles(1);
         const geometry::Pose p = motion().carte_pos_cmd;
-        trace_.push_back({p.x(), p.z(), machine_->hal().get("spindle.0.revs")->as_number()});
+        trace_.push_back({p.x(), p.z(), machine_->hal().values().get("spindle.0.revs")->as_number()});
     }
     /// The passes at the depth `x`: from the sample in which Z leaves `from` until Z is stopped at the end or
     /// X has retracted.
@@ -331,15 +331,15 @@ TEST_P(ThreadModes, AnAbortWhileTheToolGainsSpeedKeepsTheLimits) {
 
 TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut) {
     make(GetParam());
-    hal::Hal &hal = machine_->hal();
+    hal::Instance &hal = machine_->hal();
     start(THREAD);
     trace_.clear();
     for (int i = 0; i < 20000 && (trace_.empty() || trace_.back().z > -5); ++i) {
         cycle();
     }
     // Down to two thirds within about a tenth of a second.
-    ASSERT_TRUE(hal.set("spindle-rps.gain", std::to_string(2.0 / 180)).has_value());
-    ASSERT_TRUE(hal.set("sim-spindle.scale", std::to_string(2.0 / 180)).has_value());
+    ASSERT_TRUE(hal.values().set("spindle-rps.gain", std::to_string(2.0 / 180)).has_value());
+    ASSERT_TRUE(hal.values().set("sim-spindle.scale", std::to_string(2.0 / 180)).has_value());
     for (int i = 0; i < 200000 && progress(run_) == task::Progress::STARTED; ++i) {
         cycle();
     }

@@ -18,7 +18,7 @@ double expected_z(double x) {
 class ToolOffsetTest : public VirtualMachineTest {
   protected:
     double pin_value(char axis = 'z') const {
-        return machine_->hal().get(std::string("motion.tooloffset.") + axis)->as_number();
+        return machine_->hal().values().get(std::string("motion.tooloffset.") + axis)->as_number();
     }
     /// Runs until the commanded position is past `to`.
     void run_to(double to) {

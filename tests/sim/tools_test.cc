@@ -111,9 +111,9 @@ class ToolJudge : public ::testing::Test {
         }
         return id;
     }
-    bool pin(const std::string &name) const { return machine_->hal().get(name)->as_bit(); }
+    bool pin(const std::string &name) const { return machine_->hal().values().get(name)->as_bit(); }
     void set_pin(const std::string &name, const std::string &value) {
-        ASSERT_TRUE(machine_->hal().set(name, value).has_value());
+        ASSERT_TRUE(machine_->hal().values().set(name, value).has_value());
     }
     std::string messages() {
         std::string all;
@@ -341,7 +341,8 @@ class ToolJudge : public ::testing::Test {
         const messages::ToolStatus &shown = machine_->client().status().tool;
         EXPECT_EQ(shown.in_spindle, std::max(0, paper_.spindle));
         EXPECT_EQ(shown.from_pocket, paper_.from);
-        EXPECT_EQ(machine_->hal().get("iocontrol.0.tool-number")->as_number(), std::max(0, paper_.spindle));
+        EXPECT_EQ(machine_->hal().values().get("iocontrol.0.tool-number")->as_number(),
+                  std::max(0, paper_.spindle));
         EXPECT_FALSE(pin("iocontrol.0.tool-change")) << "nothing continues by itself";
         EXPECT_FALSE(pin("iocontrol.0.tool-prepare"));
         compare_file();

@@ -132,9 +132,9 @@ class VirtualMachineTest : public ::testing::Test {
     }
     const motion::Status &motion() const { return machine_->task().motion_status(); }
     double x() const { return motion().carte_pos_cmd.x(); }
-    bool pin(const std::string &name) const { return machine_->hal().get(name)->as_bit(); }
+    bool pin(const std::string &name) const { return machine_->hal().values().get(name)->as_bit(); }
     void set_pin(const std::string &name, const std::string &value) {
-        ASSERT_TRUE(machine_->hal().set(name, value).has_value());
+        ASSERT_TRUE(machine_->hal().values().set(name, value).has_value());
     }
     std::string messages() {
         std::string all;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "hal/sdk/pin_table.hh"
 
 namespace mw::testing {

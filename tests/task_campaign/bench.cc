@@ -118,7 +118,7 @@ std::string Bench::join(std::size_t number) {
 std::string Bench::bind() {
     std::string missing;
     const auto find = [&](const char *name, hal::Type type) -> volatile void * {
-        const auto address = machine_->hal().address_of(name, type);
+        const auto address = machine_->hal().values().address_of(name, type);
         missing = address ? missing : name;
         return address ? *address : nullptr;
     };

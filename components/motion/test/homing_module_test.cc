@@ -33,19 +33,19 @@ struct HomingModule : ::testing::Test {
         return status.has_value() ? "ok" : status.error().str();
     }
     void start(Manner manner) {
-        hal::HalOptions options;
+        hal::InstanceOptions options;
         options.scheduler = &clock;
         host = std::move(*hal::LocalHost::create(options, {MW_MODULE_FOLDER, MW_TEST_MODULE_FOLDER}));
         ASSERT_EQ(load("wildhome", {"manner=" + std::to_string(static_cast<int>(manner))}), "ok");
         ASSERT_EQ(load("homemod", {"replaced_by=wildhome"}), "ok");
         ASSERT_EQ(load("trivkins", {"coordinates=X"}), "ok");
         ASSERT_EQ(load("motmod", {"servo_period_nsec=1000000", "num_joints=1"}), "ok");
-        hal::Hal &hal = host->hal();
-        ASSERT_TRUE(hal.net("pos", {"joint.0.motor-pos-cmd", "joint.0.motor-pos-fb"}));
-        ASSERT_TRUE(hal.add_function("motion-command-handler", "servo-thread"));
-        ASSERT_TRUE(hal.add_function("motion-controller", "servo-thread"));
-        ASSERT_TRUE(hal.start_threads());
-        channels = static_cast<Channels *>(*hal.shared_block(Channels::SHMEM_KEY, sizeof(Channels)));
+        hal::Instance &hal = host->hal();
+        ASSERT_TRUE(hal.signals().net("pos", {"joint.0.motor-pos-cmd", "joint.0.motor-pos-fb"}));
+        ASSERT_TRUE(hal.threads().add_function("motion-command-handler", "servo-thread"));
+        ASSERT_TRUE(hal.threads().add_function("motion-controller", "servo-thread"));
+        ASSERT_TRUE(hal.threads().start());
+        channels = static_cast<Channels *>(*hal.memory().shared_block(Channels::SHMEM_KEY, sizeof(Channels)));
         send(Abort{1});
         set(Parameter::JOINT_MAX_VELOCITY, VELOCITY);
         set(Parameter::JOINT_MAX_ACCELERATION, ACCELERATION);
@@ -58,8 +58,8 @@ struct HomingModule : ::testing::Test {
     }
     void send(const CommandBody &body) { channels->immediate.push({next_id++, 1, body}); }
     void set(Parameter p, double value) { send(SetParameter{static_cast<std::uint16_t>(p), 0, value}); }
-    double motor() { return host->hal().get("joint.0.motor-pos-cmd")->as_number(); }
-    bool isHomed() { return host->hal().get("motion.is-all-homed")->as_number() != 0; }
+    double motor() { return host->hal().values().get("joint.0.motor-pos-cmd")->as_number(); }
+    bool isHomed() { return host->hal().values().get("motion.is-all-homed")->as_number() != 0; }
     void run(double seconds) {
         for (int n = 0; n < seconds * 1000; ++n) {
             clock.run_until(clock.now_ns() + 1000000);
@@ -80,11 +80,11 @@ struct HomingModule : ::testing::Test {
 
 TEST_F(HomingModule, HomesAndGivesTheJointItsPlace) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::MILD));
-    EXPECT_EQ(host->hal().get("joint.0.homing")->as_number(), 1);
+    EXPECT_EQ(host->hal().values().get("joint.0.homing")->as_number(), 1);
     run(5);
     EXPECT_TRUE(isHomed());
     EXPECT_NEAR(motor(), -2, 1e-9) << "4 below the start is 10, and it went to 12";
-    EXPECT_NEAR(host->hal().get("joint.0.pos-fb")->as_number(), 12, 1e-9);
+    EXPECT_NEAR(host->hal().values().get("joint.0.pos-fb")->as_number(), 12, 1e-9);
     EXPECT_EQ(faults(), "");
     EXPECT_TRUE(checker.isWithin()) << checker.report();
     EXPECT_LE(checker.worst_velocity(), 5.0 / VELOCITY + 1e-6) << "as slowly as it asked for";
@@ -92,7 +92,7 @@ TEST_F(HomingModule, HomesAndGivesTheJointItsPlace) {
 
 TEST_F(HomingModule, SeesFeedbackAndLimitsOfThisCycle) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::MILD));
-    const auto pin = [&](const char *name) { return host->hal().get(name)->as_number(); };
+    const auto pin = [&](const char *name) { return host->hal().values().get(name)->as_number(); };
     int moving = 0;
     for (int n = 0; n < 5000; ++n) {
         const double before = motor();
@@ -151,7 +151,7 @@ TEST_F(HomingModule, AJointThatItLetsGoOfBrakesAndStands) {
     EXPECT_GT(stood, -2.2) << "it braked at once";
     run(1);
     EXPECT_EQ(motor(), stood);
-    EXPECT_EQ(host->hal().get("joint.0.homing")->as_number(), 1);
+    EXPECT_EQ(host->hal().values().get("joint.0.homing")->as_number(), 1);
     EXPECT_TRUE(checker.isWithin()) << checker.report();
 }
 
@@ -165,8 +165,8 @@ TEST_F(HomingModule, OneThatGivesUpIsToldOf) {
 
 TEST_F(HomingModule, MayHaveTheHomingPinsItself) {
     ASSERT_NO_FATAL_FAILURE(start(Manner::OWN_PINS));
-    EXPECT_TRUE(host->hal().get("joint.0.home-sw-in").has_value());
-    EXPECT_FALSE(host->hal().get("joint.0.homing").has_value());
+    EXPECT_TRUE(host->hal().values().get("joint.0.home-sw-in").has_value());
+    EXPECT_FALSE(host->hal().values().get("joint.0.homing").has_value());
     run(5);
     EXPECT_TRUE(isHomed());
 }

@@ -18,7 +18,7 @@ struct Loaded {
     std::unique_ptr<hal::LocalHost> host;
 
     Loaded() {
-        hal::HalOptions options;
+        hal::InstanceOptions options;
         options.scheduler = &clock;
         auto made = hal::LocalHost::create(options, {MW_MODULE_FOLDER});
         if (made.has_value()) {
@@ -29,7 +29,7 @@ struct Loaded {
         const auto status = host->load_realtime(name, args);
         return status.has_value() ? "ok" : status.error().str();
     }
-    double value(const std::string &pin) { return host->hal().get(pin)->as_number(); }
+    double value(const std::string &pin) { return host->hal().values().get(pin)->as_number(); }
 };
 
 struct Module {
@@ -146,7 +146,7 @@ TEST(KinematicsModules, HavePinsWithTheValuesOfLinuxCNC) {
         Loaded machine;
         ASSERT_EQ(machine.load(module.name), "ok");
         for (const auto &[name, start] : module.starts) {
-            ASSERT_TRUE(machine.host->hal().get(name).has_value()) << name;
+            ASSERT_TRUE(machine.host->hal().values().get(name).has_value()) << name;
             EXPECT_DOUBLE_EQ(machine.value(name), start) << name;
         }
     }
@@ -158,7 +158,7 @@ TEST(KinematicsModules, EveryPinIsInThePage) {
         ASSERT_EQ(machine.load(module.name), "ok");
         const std::string page = page_of(module.name);
         ASSERT_FALSE(page.empty()) << module.name;
-        for (const auto &pin : machine.host->hal().pins("*")) {
+        for (const auto &pin : machine.host->hal().pins().list("*")) {
             if (pin.name.find(".fdemo.") == std::string::npos) {  // function times, which every function has
                 EXPECT_NE(page.find("*" + as_in_page(pin.name) + "*"), std::string::npos) << pin.name;
             }

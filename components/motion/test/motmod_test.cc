@@ -17,7 +17,7 @@ struct Machine {
     CommandId next_id = 1;
 
     Machine() {
-        hal::HalOptions options;
+        hal::InstanceOptions options;
         options.scheduler = &clock;
         auto made = hal::LocalHost::create(options, {MW_MODULE_FOLDER, MW_TEST_MODULE_FOLDER});
         if (made.has_value()) {
@@ -33,15 +33,15 @@ struct Machine {
         ASSERT_EQ(load("homemod"), "ok");
         ASSERT_EQ(load(kinematics), "ok");
         ASSERT_EQ(load("motmod", {"servo_period_nsec=1000000", "num_joints=3"}), "ok");
-        hal::Hal &hal = host->hal();
+        hal::Instance &hal = host->hal();
         for (const std::string n : {"0", "1", "2"}) {
-            ASSERT_TRUE(
-                hal.net("pos" + n, {"joint." + n + ".motor-pos-cmd", "joint." + n + ".motor-pos-fb"}));
+            ASSERT_TRUE(hal.signals().net("pos" + n,
+                                          {"joint." + n + ".motor-pos-cmd", "joint." + n + ".motor-pos-fb"}));
         }
-        ASSERT_TRUE(hal.add_function("motion-command-handler", "servo-thread"));
-        ASSERT_TRUE(hal.add_function("motion-controller", "servo-thread"));
-        ASSERT_TRUE(hal.start_threads());
-        const auto block = hal.shared_block(Channels::SHMEM_KEY, sizeof(Channels));
+        ASSERT_TRUE(hal.threads().add_function("motion-command-handler", "servo-thread"));
+        ASSERT_TRUE(hal.threads().add_function("motion-controller", "servo-thread"));
+        ASSERT_TRUE(hal.threads().start());
+        const auto block = hal.memory().shared_block(Channels::SHMEM_KEY, sizeof(Channels));
         ASSERT_TRUE(block.has_value());
         channels = static_cast<Channels *>(*block);
         ASSERT_EQ(channels->magic, Channels::MAGIC);
@@ -49,7 +49,7 @@ struct Machine {
     }
     void send(const CommandBody &body) { channels->immediate.push({next_id++, 1, body}); }
     void run(double seconds) { clock.run_until(clock.now_ns() + static_cast<std::int64_t>(seconds * 1e9)); }
-    double value(const std::string &pin) { return host->hal().get(pin)->as_number(); }
+    double value(const std::string &pin) { return host->hal().values().get(pin)->as_number(); }
     void ready() {
         send(Abort{1});
         for (std::int16_t j = 0; j < 3; ++j) {
@@ -69,14 +69,14 @@ TEST(Motmod, APinThatSeldomChangesIsSeenInTheCycleAfterItWasLinked) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start());
     m.ready();
-    hal::Hal &hal = m.host->hal();
+    hal::Instance &hal = m.host->hal();
     ASSERT_EQ(m.value("joint.1.homed"), 1);
     ASSERT_EQ(m.value("joint.1.amp-enable-out"), 1);
     // A signal with a reader keeps its value when a writer is linked.
-    ASSERT_TRUE(hal.net("homed", {"joint.0.home-sw-in"}));
-    ASSERT_TRUE(hal.net("amp", {"joint.1.jog-enable"}));
-    ASSERT_TRUE(hal.net("homed", {"joint.1.homed"}));
-    ASSERT_TRUE(hal.net("amp", {"joint.1.amp-enable-out"}));
+    ASSERT_TRUE(hal.signals().net("homed", {"joint.0.home-sw-in"}));
+    ASSERT_TRUE(hal.signals().net("amp", {"joint.1.jog-enable"}));
+    ASSERT_TRUE(hal.signals().net("homed", {"joint.1.homed"}));
+    ASSERT_TRUE(hal.signals().net("amp", {"joint.1.amp-enable-out"}));
     ASSERT_EQ(m.value("joint.0.home-sw-in"), 0);
     m.run(0.001);
     EXPECT_EQ(m.value("joint.0.home-sw-in"), 1);
@@ -111,11 +111,11 @@ TEST(Motmod, InputsAndOutputsOfProgramsAreThoseOfTheirPins) {
     ASSERT_NO_FATAL_FAILURE(m.start());
     m.ready();
     auto seen = std::make_unique<PublishedStatus::Copy>();
-    hal::Hal &hal = m.host->hal();
+    hal::Instance &hal = m.host->hal();
     for (std::uint16_t n = 0; n < 4; ++n) {
         const std::string number = "-0" + std::to_string(n);
-        ASSERT_TRUE(hal.set("motion.digital-in" + number, "TRUE"));
-        ASSERT_TRUE(hal.set("motion.analog-in" + number, std::to_string(n + 1.5)));
+        ASSERT_TRUE(hal.values().set("motion.digital-in" + number, "TRUE"));
+        ASSERT_TRUE(hal.values().set("motion.analog-in" + number, std::to_string(n + 1.5)));
         m.send(SetDigitalOutput{n, true});
         m.send(SetAnalogOutput{n, 0.25 * (n + 1)});
         m.run(0.002);
@@ -127,8 +127,8 @@ TEST(Motmod, InputsAndOutputsOfProgramsAreThoseOfTheirPins) {
             EXPECT_EQ(m.value("motion.digital-out" + other), i == n ? 1 : 0) << i;
             EXPECT_EQ(m.value("motion.analog-out" + other), i == n ? 0.25 * (n + 1) : 0.0) << i;
         }
-        ASSERT_TRUE(hal.set("motion.digital-in" + number, "FALSE"));
-        ASSERT_TRUE(hal.set("motion.analog-in" + number, "0"));
+        ASSERT_TRUE(hal.values().set("motion.digital-in" + number, "FALSE"));
+        ASSERT_TRUE(hal.values().set("motion.analog-in" + number, "0"));
         m.send(SetDigitalOutput{n, false});
         m.send(SetAnalogOutput{n, 0});
     }
@@ -139,7 +139,7 @@ TEST(Motmod, EstopChainDropsTheAmplifiersInTheSameServoCycle) {
     ASSERT_NO_FATAL_FAILURE(m.start());
     m.ready();
     ASSERT_EQ(m.value("joint.2.amp-enable-out"), 1);
-    ASSERT_TRUE(m.host->hal().set("motion.emc-enable-in", "FALSE"));
+    ASSERT_TRUE(m.host->hal().values().set("motion.emc-enable-in", "FALSE"));
     m.run(0.001);
     EXPECT_EQ(m.value("joint.2.amp-enable-out"), 0);
     EXPECT_EQ(m.value("motion.motion-enabled"), 0);
@@ -170,7 +170,7 @@ TEST(Motmod, KinematicsOfOthersMoveTheJoints) {
 TEST(Motmod, WithoutKinematicsItSaysWhatToLoad) {
     Machine m;
     EXPECT_NE(m.load("motmod").find("loadrt trivkins"), std::string::npos);
-    EXPECT_TRUE(m.host->hal().components().empty());
+    EXPECT_TRUE(m.host->hal().components().list().empty());
 }
 
 TEST(Motmod, RefusesCountsOutOfRange) {
@@ -185,9 +185,9 @@ TEST(Motmod, RefusesCountsOutOfRange) {
         std::string::npos)
         << "trivkins moves nine, or those of coordinates=";
     ASSERT_EQ(m.load("motmod", {"num_joints=2", "num_dio=7"}), "ok");
-    EXPECT_EQ(m.host->hal().pins("joint.*.motor-pos-cmd").size(), 2U);
-    EXPECT_EQ(m.host->hal().pins("axis.*.pos-cmd").size(), 9U);
-    EXPECT_EQ(m.host->hal().pins("motion.digital-in-*").size(), 7U);
+    EXPECT_EQ(m.host->hal().pins().list("joint.*.motor-pos-cmd").size(), 2U);
+    EXPECT_EQ(m.host->hal().pins().list("axis.*.pos-cmd").size(), 9U);
+    EXPECT_EQ(m.host->hal().pins().list("motion.digital-in-*").size(), 7U);
 }
 
 TEST(Motmod, KinematicsThatLackAFunctionAreRefusedByItsName) {
@@ -224,7 +224,7 @@ TEST(Motmod, CanBeUnloadedAndLoadedAgain) {
     Machine m;
     ASSERT_NO_FATAL_FAILURE(m.start());
     m.ready();
-    ASSERT_TRUE(m.host->hal().stop_threads());
+    ASSERT_TRUE(m.host->hal().threads().stop());
     ASSERT_TRUE(m.host->unload_realtime("motmod"));
     ASSERT_EQ(m.load("motmod", {"num_joints=3"}), "ok");
 }

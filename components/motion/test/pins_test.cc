@@ -51,7 +51,7 @@ std::map<std::string, PinText> expected(const std::map<std::string, int> &counts
 
 TEST(MotmodPins, EveryRowOfTheTablesIsAPinAndEveryPinIsARow) {
     runtime::VirtualScheduler clock;
-    hal::HalOptions options;
+    hal::InstanceOptions options;
     options.scheduler = &clock;
     auto host = hal::LocalHost::create(options, {MW_MODULE_FOLDER});
     ASSERT_TRUE(host.has_value());
@@ -72,7 +72,7 @@ TEST(MotmodPins, EveryRowOfTheTablesIsAPinAndEveryPinIsARow) {
                                                {"motion.misc-error-", 2}};
     const std::map<std::string, PinText> wanted = expected(counts, {1, 4}, 9);
     std::size_t found = 0;
-    for (const hal::PinInfo &pin : (*host)->hal().pins("*")) {
+    for (const hal::PinInfo &pin : (*host)->hal().pins().list("*")) {
         if (pin.owner != "motmod" || pin.name.ends_with(".time")) {
             continue;
         }
@@ -88,13 +88,13 @@ TEST(MotmodPins, EveryRowOfTheTablesIsAPinAndEveryPinIsARow) {
 
 TEST(MotmodPins, SwitchableKinematicsHaveThePinOfTheirType) {
     runtime::VirtualScheduler clock;
-    hal::HalOptions options;
+    hal::InstanceOptions options;
     options.scheduler = &clock;
     auto host = hal::LocalHost::create(options, {MW_MODULE_FOLDER});
     ASSERT_TRUE(host.has_value());
     ASSERT_TRUE((*host)->load_realtime("xyzac-trt-kins", {}).has_value());
     ASSERT_TRUE((*host)->load_realtime("motmod", {"num_joints=5"}).has_value());
-    const std::vector<hal::PinInfo> pins = (*host)->hal().pins("motion.switchkins-type");
+    const std::vector<hal::PinInfo> pins = (*host)->hal().pins().list("motion.switchkins-type");
     ASSERT_EQ(pins.size(), 1U);
     EXPECT_EQ(pins[0].type, hal::Type::FLOAT);
     EXPECT_EQ(pins[0].dir, hal::Dir::IN);

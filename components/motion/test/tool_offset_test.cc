@@ -15,21 +15,22 @@ namespace {
 class ToolOffsetPins : public ::testing::Test {
   protected:
     ToolOffsetPins() {
-        hal::HalOptions options;
+        hal::InstanceOptions options;
         options.scheduler = &clock;
         host = std::move(*hal::LocalHost::create(options, {MW_MODULE_FOLDER}));
         EXPECT_TRUE(io.create(hal()).has_value());
     }
     ~ToolOffsetPins() override { io.destroy(); }
-    hal::Hal &hal() { return host->hal(); }
+    hal::Instance &hal() { return host->hal(); }
     void load() {
         ASSERT_TRUE(host->load_realtime("trivkins", {}).has_value());
         ASSERT_TRUE(host->load_realtime("motmod", {"num_joints=3"}).has_value());
-        ASSERT_TRUE(hal().add_function("motion-command-handler", "servo-thread"));
-        ASSERT_TRUE(hal().add_function("motion-controller", "servo-thread"));
-        ASSERT_TRUE(hal().start_threads());
+        ASSERT_TRUE(hal().threads().add_function("motion-command-handler", "servo-thread"));
+        ASSERT_TRUE(hal().threads().add_function("motion-controller", "servo-thread"));
+        ASSERT_TRUE(hal().threads().start());
         ASSERT_TRUE(io.join_tool_offset().has_value());
-        channels = static_cast<Channels *>(*hal().shared_block(Channels::SHMEM_KEY, sizeof(Channels)));
+        channels =
+            static_cast<Channels *>(*hal().memory().shared_block(Channels::SHMEM_KEY, sizeof(Channels)));
     }
     void write(const geometry::Pose &pose) {
         io::Outputs outputs;
@@ -40,8 +41,10 @@ class ToolOffsetPins : public ::testing::Test {
     geometry::Pose shown() {
         geometry::Pose pose;
         for (int i = 0; i < MAX_AXES; ++i) {
-            pose[i] =
-                hal().get(std::string("motion.tooloffset.") + geometry::AXIS_LETTERS_LOWER[i])->as_number();
+            pose[i] = hal()
+                          .values()
+                          .get(std::string("motion.tooloffset.") + geometry::AXIS_LETTERS_LOWER[i])
+                          ->as_number();
         }
         return pose;
     }
@@ -54,10 +57,10 @@ class ToolOffsetPins : public ::testing::Test {
 };
 
 TEST_F(ToolOffsetPins, AreMadeWithMotmodAndAreZero) {
-    EXPECT_FALSE(hal().hasPin("motion.tooloffset.z"));
+    EXPECT_FALSE(hal().pins().has("motion.tooloffset.z"));
     ASSERT_NO_FATAL_FAILURE(load());
-    EXPECT_EQ(hal().pins("motion.tooloffset.*").size(), std::size_t{MAX_AXES});
-    EXPECT_EQ(hal().pin("motion.tooloffset.z")->dir, hal::Dir::OUT);
+    EXPECT_EQ(hal().pins().list("motion.tooloffset.*").size(), std::size_t{MAX_AXES});
+    EXPECT_EQ(hal().pins().find("motion.tooloffset.z")->dir, hal::Dir::OUT);
     EXPECT_EQ(shown().c, geometry::Pose{}.c);
 }
 
@@ -81,7 +84,7 @@ TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessIsDead) {
     run_cycle();
     channels->isTaskDead = 1;
     io.destroy();  // its pins disappear with the process
-    ASSERT_FALSE(hal().hasPin("iocontrol.0.tool-number"));
+    ASSERT_FALSE(hal().pins().has("iocontrol.0.tool-number"));
     for (int i = 0; i < 1000; ++i) {
         run_cycle();
         ASSERT_EQ(shown().c, offset.c);
@@ -93,7 +96,7 @@ TEST_F(ToolOffsetPins, KeepTheirValuesWhenTheTaskProcessDiesWithinAWrite) {
     write(offset);
     run_cycle();
     auto &block = *static_cast<io::ToolOffsetBlock *>(
-        *hal().shared_block(io::ToolOffsetBlock::SHMEM_KEY, sizeof(io::ToolOffsetBlock)));
+        *hal().memory().shared_block(io::ToolOffsetBlock::SHMEM_KEY, sizeof(io::ToolOffsetBlock)));
     write({{100, 200, 300}});
     // The sequence number comes first; an odd value means that a write is in progress.
     std::atomic_ref(*reinterpret_cast<std::uint32_t *>(&block.latest)).fetch_sub(1);
@@ -109,10 +112,10 @@ TEST_F(ToolOffsetPins, AreSeenInTheCycleAfterTheyWereLinked) {
     ASSERT_NO_FATAL_FAILURE(load());
     write(offset);
     run_cycle();
-    ASSERT_TRUE(hal().net("length", {"motion.adaptive-feed"}).has_value());
-    ASSERT_TRUE(hal().net("length", {"motion.tooloffset.z"}).has_value());
+    ASSERT_TRUE(hal().signals().net("length", {"motion.adaptive-feed"}).has_value());
+    ASSERT_TRUE(hal().signals().net("length", {"motion.tooloffset.z"}).has_value());
     run_cycle();
-    EXPECT_EQ(hal().get("motion.adaptive-feed")->as_number(), 3);
+    EXPECT_EQ(hal().values().get("motion.adaptive-feed")->as_number(), 3);
 }
 
 TEST_F(ToolOffsetPins, NobodyWaitsForThemWhereMotmodIsNotLoaded) {

@@ -68,7 +68,7 @@ TEST_F(HalPiGpio, NamesPinsByTheHeader) {
     bench.pass();
     EXPECT_EQ(bench.get("hal_pi_gpio.pin-03-out-fake"), 1.0);
     EXPECT_EQ(bench.get("hal_pi_gpio.pin-05-in"), 1.0);
-    EXPECT_TRUE(bench.hal().pins("hal_pi_gpio.pin-07-*").empty());
+    EXPECT_TRUE(bench.hal().pins().list("hal_pi_gpio.pin-07-*").empty());
 }
 
 TEST_F(HalPiGpio, AMaskThatIsNoneIsAnError) {

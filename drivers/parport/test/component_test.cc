@@ -10,14 +10,14 @@ namespace {
 TEST(HalParport, HasPinsOfEachPort) {
     Bench bench{"loadrt hal_parport backend=simulated cfg=\"0x378 out 0x278 in\"\naddf parport.read-all "
                 "t\naddf parport.write-all t"};
-    const auto has_pin = [&](const std::string &name) { return bench.hal().pins(name).size() == 1; };
+    const auto has_pin = [&](const std::string &name) { return bench.hal().pins().list(name).size() == 1; };
     for (const char *name : {"parport.0.pin-01-out", "parport.0.pin-09-out", "parport.0.pin-15-in",
                              "parport.0.pin-15-in-not", "parport.1.pin-02-in", "parport.1.pin-17-out"}) {
         EXPECT_TRUE(has_pin(name)) << name;
     }
     EXPECT_FALSE(has_pin("parport.1.pin-02-out"));
     EXPECT_FALSE(has_pin("parport.0.pin-02-in"));
-    const auto params = bench.hal().params("parport.*.reset-time");
+    const auto params = bench.hal().params().list("parport.*.reset-time");
     ASSERT_EQ(params.size(), 1U) << "the port with inputs has no data pins to reset";
     EXPECT_EQ(params[0].type, hal::Type::U32);
 }

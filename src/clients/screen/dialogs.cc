@@ -9,12 +9,12 @@ using hal::Dir;
 
 Dialogs::~Dialogs() {
     if (hal_ != nullptr) {
-        static_cast<void>(hal_->delete_component(component_));  // nothing is to be done where it is gone
+        static_cast<void>(hal_->components().remove(component_));  // nothing is to be done where it is gone
     }
 }
 
-Result<> Dialogs::begin(hal::Hal &hal) {
-    const auto made = hal.new_component(COMPONENT);
+Result<> Dialogs::begin(hal::Instance &hal) {
+    const auto made = hal.components().create(COMPONENT);
     if (!made.has_value()) {
         return std::unexpected(made.error());
     }
@@ -38,10 +38,10 @@ Result<> Dialogs::begin(hal::Hal &hal) {
         asker.response.make(hal, component_, name + "-response", Dir::OUT, status);
     }
     if (status.has_value()) {
-        status = hal.set_ready(component_);
+        status = hal.components().set_ready(component_);
     }
     if (!status.has_value()) {
-        static_cast<void>(hal.delete_component(component_));
+        static_cast<void>(hal.components().remove(component_));
         return status;
     }
     hal_ = &hal;

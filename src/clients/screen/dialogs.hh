@@ -41,7 +41,7 @@ class Dialogs {
     Dialogs &operator=(const Dialogs &) = delete;
 
     /// Makes the pins in the HAL of a running machine; an error where another screen has them.
-    Result<> begin(hal::Hal &hal);
+    Result<> begin(hal::Instance &hal);
     /// The HAL is gone with its pins.
     void leave() { hal_ = nullptr; }
     bool isReady() const { return hal_ != nullptr; }
@@ -75,7 +75,7 @@ class Dialogs {
     std::vector<RequestOrigin> askers_;
     std::vector<std::size_t> asked_;
     std::vector<std::string> notes_;
-    hal::Hal *hal_ = nullptr;
+    hal::Instance *hal_ = nullptr;
     int component_ = 0;
 };
 

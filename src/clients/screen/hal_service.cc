@@ -160,7 +160,7 @@ const char *state_name(CaptureState state) {
 }  // namespace
 
 hal::Host *HalService::host() {
-    if (host_ != nullptr && host_->hal().host_end().has_value()) {
+    if (host_ != nullptr && host_->hal().host_status().end_reason().has_value()) {
         capture_.reset();
         dialogs_.leave();
         has_told_failure_ = false;
@@ -182,15 +182,15 @@ Response HalService::list(const std::string &glob) {
     if (joined == nullptr) {
         return error_response(503, reason_);
     }
-    const hal::Hal &hal = joined->hal();
+    hal::Instance &hal = joined->hal();
     Json json{{"pins", Json::array()}, {"signals", Json::array()}, {"params", Json::array()}};
-    for (const hal::PinInfo &pin : hal.pins(glob)) {
+    for (const hal::PinInfo &pin : hal.pins().list(glob)) {
         json["pins"].push_back(pin_document(pin));
     }
-    for (const hal::SignalInfo &signal : hal.signals(glob)) {
+    for (const hal::SignalInfo &signal : hal.signals().list(glob)) {
         json["signals"].push_back(signal_document(signal));
     }
-    for (const hal::ParamInfo &param : hal.params(glob)) {
+    for (const hal::ParamInfo &param : hal.params().list(glob)) {
         json["params"].push_back(param_document(param));
     }
     return document(json);
@@ -201,20 +201,20 @@ Response HalService::inputs() {
     if (joined == nullptr) {
         return error_response(503, reason_);
     }
-    const hal::Hal &hal = joined->hal();
+    hal::Instance &hal = joined->hal();
     std::set<std::string> written;
-    for (const hal::SignalInfo &signal : hal.signals("*")) {
+    for (const hal::SignalInfo &signal : hal.signals().list("*")) {
         if (signal.writers > 0) {
             written.insert(signal.name);
         }
     }
     const auto hasSource = [&](const std::string &name) {
-        const auto pins = hal.pins(name);
+        const auto pins = hal.pins().list(name);
         return std::ranges::any_of(pins,
                                    [&](const hal::PinInfo &pin) { return written.contains(pin.signal); });
     };
     Json spindles = Json::array();
-    for (int i = 0; hal.hasPin(fmt::format("spindle.{}.speed-in", i)); ++i) {
+    for (int i = 0; hal.pins().has(fmt::format("spindle.{}.speed-in", i)); ++i) {
         spindles.push_back({{"speed_in", hasSource(fmt::format("spindle.{}.speed-in", i))},
                             {"at_speed", hasSource(fmt::format("spindle.{}.at-speed", i))}});
     }
@@ -231,13 +231,13 @@ Response HalService::set(const std::string &name, std::string_view body) {
     if (!value.has_value() || value->empty()) {
         return error_response(400, R"(a value is set by {"value": "..."})");
     }
-    hal::Hal &hal = joined->hal();
-    const bool is_signal = !hal.hasParam(name) && !hal.hasPin(name) && hal.hasSignal(name);
+    hal::Instance &hal = joined->hal();
+    const bool is_signal = !hal.params().has(name) && !hal.pins().has(name) && hal.signals().has(name);
     const auto put = [&](const std::string &text) {
-        return is_signal ? hal.set_signal(name, text) : hal.set(name, text);
+        return is_signal ? hal.signals().set(name, text) : hal.values().set(name, text);
     };
     const auto pulse_ms = member<std::uint32_t>(json, "pulse_ms", 0);
-    const auto before = is_signal ? hal.get_signal(name) : hal.get(name);
+    const auto before = is_signal ? hal.signals().get(name) : hal.values().get(name);
     if (!pulse_ms.has_value() || *pulse_ms > MOST_PULSE_MS) {
         return error_response(400, "a pulse is at most " + std::to_string(MOST_PULSE_MS) + " ms long");
     }
@@ -257,9 +257,9 @@ std::map<std::string, std::string> HalService::read(const std::vector<std::strin
         if (joined == nullptr) {
             continue;
         }
-        auto value = joined->hal().get(name);
+        auto value = joined->hal().values().get(name);
         if (!value.has_value()) {
-            value = joined->hal().get_signal(name);
+            value = joined->hal().signals().get(name);
         }
         if (value.has_value()) {
             text = text_of(json_of(*value));

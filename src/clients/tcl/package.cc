@@ -9,7 +9,7 @@
 
 #include "clients/nml/remote/find_machine.hh"
 #include "clients/tcl/commands.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 #define MW_EXPORT __attribute__((visibility("default")))
 

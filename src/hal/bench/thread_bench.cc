@@ -5,7 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "runtime/virtual_scheduler.hh"
 
 namespace mw::hal {
@@ -16,17 +16,17 @@ void nothing(void * /*argument*/, long /*period_ns*/) {}
 /// Argument: functions in the thread.
 void BM_VirtualPeriod(benchmark::State &state) {
     runtime::VirtualScheduler clock;
-    HalOptions options;
+    InstanceOptions options;
     options.scheduler = &clock;
-    auto hal = Hal::create(options).value();
-    const int comp = *hal->new_component("bench", CompType::REALTIME);
-    (void)hal->new_thread("t", 1'000'000);
+    auto hal = Instance::create(options).value();
+    const int comp = *hal->components().create("bench", CompType::REALTIME);
+    (void)hal->threads().create("t", 1'000'000);
     for (int i = 0; i < state.range(0); ++i) {
         const std::string name = "f" + std::to_string(i);
-        (void)hal->new_funct(name, &nothing, nullptr, comp);
-        (void)hal->add_function(name, "t");
+        (void)hal->functions().create(name, {&nothing, nullptr}, comp);
+        (void)hal->threads().add_function(name, "t");
     }
-    (void)hal->start_threads();
+    (void)hal->threads().start();
     for (auto _ : state) {
         clock.step();
     }
@@ -35,16 +35,16 @@ BENCHMARK(BM_VirtualPeriod)->Arg(0)->Arg(10)->Arg(50);
 
 void BM_SetAndGetByName(benchmark::State &state) {
     runtime::VirtualScheduler clock;
-    HalOptions options;
+    InstanceOptions options;
     options.scheduler = &clock;
-    auto hal = Hal::create(options).value();
-    const int comp = *hal->new_component("bench");
+    auto hal = Instance::create(options).value();
+    const int comp = *hal->components().create("bench");
     for (int i = 0; i < 2000; ++i) {
-        (void)hal->new_pin("bench.pin-" + std::to_string(i), Type::FLOAT, Dir::IN, comp);
+        (void)hal->pins().create("bench.pin-" + std::to_string(i), Type::FLOAT, Dir::IN, comp);
     }
     for (auto _ : state) {
-        (void)hal->set("bench.pin-1000", Value::of_float(1.0));
-        benchmark::DoNotOptimize(hal->get("bench.pin-1000"));
+        (void)hal->values().set("bench.pin-1000", Value::of_float(1.0));
+        benchmark::DoNotOptimize(hal->values().get("bench.pin-1000"));
     }
 }
 BENCHMARK(BM_SetAndGetByName);

@@ -6,12 +6,13 @@
 #include <mutex>
 
 #include "hal/capi/status.hh"
+#include "hal/core/loader.hh"
 #include "runtime/format.hh"
 
 namespace mw::hal::capi {
 
 runtime::Log &current_log() noexcept {
-    Hal *hal = current();
+    Instance *hal = current();
     if (hal != nullptr) {
         return hal->log();
     }
@@ -40,7 +41,7 @@ namespace {
 /// The instance that hal_init has joined for a program without its own instance.
 struct ProcessAttachment {
     std::mutex mutex;
-    std::unique_ptr<Hal> hal;
+    std::unique_ptr<Instance> hal;
     int users = 0;
 };
 
@@ -51,15 +52,15 @@ ProcessAttachment &attachment() {
 }
 
 /// The current instance; joins the one of the environment if the process has none. Each call needs a leave().
-Hal *joined() {
+Instance *joined() {
     ProcessAttachment &here = attachment();
     const std::lock_guard lock(here.mutex);
-    Hal *own = current();
+    Instance *own = current();
     if (own != nullptr && own != here.hal.get()) {
         return own;
     }
     if (here.hal == nullptr) {
-        auto attached = Hal::attach(default_instance());
+        auto attached = Instance::attach(default_instance());
         if (!attached) {
             complain(attached.error());
             return nullptr;
@@ -71,7 +72,7 @@ Hal *joined() {
     return here.hal.get();
 }
 
-void leave(const Hal *hal) {
+void leave(const Instance *hal) {
     ProcessAttachment &here = attachment();
     const std::lock_guard lock(here.mutex);
     const bool is_user = here.hal.get() == hal && here.users > 0;
@@ -82,11 +83,11 @@ void leave(const Hal *hal) {
 }
 
 template <class Info>
-int hand_out(Hal &hal, const Result<Info> &info, hal_type_t *type, hal_data_u **data) {
+int hand_out(Instance &hal, const Result<Info> &info, hal_type_t *type, hal_data_u **data) {
     if (!info) {
         return -ENOENT;
     }
-    const auto address = hal.address_of(info->name, info->type);
+    const auto address = hal.values().address_of(info->name, info->type);
     if (!address) {
         return -ENOENT;
     }
@@ -101,17 +102,16 @@ int hand_out(Hal &hal, const Result<Info> &info, hal_type_t *type, hal_data_u **
 using namespace mw;
 using namespace mw::hal;
 using namespace mw::hal::capi;
-using namespace mw::hal::detail;
 
 extern "C" {
 
 int hal_init(const char *name) {
-    Hal *hal = joined();
+    Instance *hal = joined();
     if (hal == nullptr) {
         return -ENOENT;
     }
-    const auto id = hal->new_component(name == nullptr ? "" : name,
-                                       context().loading != nullptr ? CompType::REALTIME : CompType::USER);
+    const auto id = hal->components().create(name == nullptr ? "" : name,
+                                             Loader::isLoading() ? CompType::REALTIME : CompType::USER);
     if (!id) {
         const int status = complain(id.error());
         leave(hal);
@@ -121,11 +121,11 @@ int hal_init(const char *name) {
 }
 
 int hal_exit(int comp_id) {
-    Hal *hal = current();
+    Instance *hal = current();
     if (hal == nullptr) {
         return -EINVAL;
     }
-    const int status = status_of(hal->delete_component(comp_id));
+    const int status = status_of(hal->components().remove(comp_id));
     leave(hal);
     return status;
 }
@@ -135,17 +135,17 @@ int hal_lib_init(void) {
 }
 
 void hal_lib_exit(void) {
-    if (Hal *hal = current()) {
+    if (Instance *hal = current()) {
         leave(hal);
     }
 }
 
 int hal_ready(int comp_id) {
-    return with_hal([&](Hal &hal) { return status_of(hal.set_ready(comp_id, true)); });
+    return with_hal([&](Instance &hal) { return hal.components().set_ready(comp_id, true); });
 }
 
 int hal_unready(int comp_id) {
-    return with_hal([&](Hal &hal) { return status_of(hal.set_ready(comp_id, false)); });
+    return with_hal([&](Instance &hal) { return hal.components().set_ready(comp_id, false); });
 }
 
 int hal_set_unready(int comp_id) {
@@ -153,13 +153,8 @@ int hal_set_unready(int comp_id) {
 }
 
 char *hal_comp_name(int comp_id) {
-    Hal *hal = current();
-    if (hal == nullptr) {
-        return nullptr;
-    }
-    Guard guard(hal->impl());
-    auto *comp = hal->impl().find_comp(comp_id);
-    return comp == nullptr ? nullptr : comp->name.data();
+    Instance *hal = current();
+    return hal == nullptr ? nullptr : hal->components().stored_name(comp_id);
 }
 
 int hal_is_init(void) {
@@ -167,8 +162,8 @@ int hal_is_init(void) {
 }
 
 void *hal_malloc(long int size) {
-    Hal *hal = current();
-    return hal == nullptr || size < 0 ? nullptr : hal->allocate(static_cast<std::size_t>(size));
+    Instance *hal = current();
+    return hal == nullptr || size < 0 ? nullptr : hal->memory().allocate(static_cast<std::size_t>(size));
 }
 
 const char *hal_strerror(int err) {
@@ -178,34 +173,34 @@ const char *hal_strerror(int err) {
 // ---- signals and values
 
 int hal_signal_new(const char *name, hal_type_t type) {
-    return with_hal([&](Hal &hal) { return status_of(hal.new_signal(name, static_cast<Type>(type))); });
+    return with_hal([&](Instance &hal) { return hal.signals().create(name, static_cast<Type>(type)); });
 }
 
 int hal_signal_delete(const char *name) {
-    return with_hal([&](Hal &hal) { return status_of(hal.delete_signal(name)); });
+    return with_hal([&](Instance &hal) { return hal.signals().remove(name); });
 }
 
 int hal_link(const char *pin_name, const char *sig_name) {
-    return with_hal([&](Hal &hal) { return status_of(hal.link(pin_name, sig_name)); });
+    return with_hal([&](Instance &hal) { return hal.signals().link(pin_name, sig_name); });
 }
 
 int hal_unlink(const char *pin_name) {
-    return with_hal([&](Hal &hal) { return status_of(hal.unlink(pin_name)); });
+    return with_hal([&](Instance &hal) { return hal.signals().unlink(pin_name); });
 }
 
 int hal_pin_alias(const char *pin_name, const char *alias) {
     return with_hal(
-        [&](Hal &hal) { return status_of(hal.alias_pin(pin_name, alias == nullptr ? "" : alias)); });
+        [&](Instance &hal) { return hal.pins().set_alias(pin_name, alias == nullptr ? "" : alias); });
 }
 
 int hal_param_alias(const char *param_name, const char *alias) {
     return with_hal(
-        [&](Hal &hal) { return status_of(hal.alias_param(param_name, alias == nullptr ? "" : alias)); });
+        [&](Instance &hal) { return hal.params().set_alias(param_name, alias == nullptr ? "" : alias); });
 }
 
 int hal_get_pin_value_by_name(const char *name, hal_type_t *type, hal_data_u **data, bool *connected) {
-    return with_hal([&](Hal &hal) {
-        const auto info = hal.pin(name);
+    return with_hal([&](Instance &hal) {
+        const auto info = hal.pins().find(name);
         if (info && connected != nullptr) {
             *connected = !info->signal.empty();
         }
@@ -214,8 +209,8 @@ int hal_get_pin_value_by_name(const char *name, hal_type_t *type, hal_data_u **d
 }
 
 int hal_get_signal_value_by_name(const char *name, hal_type_t *type, hal_data_u **data, bool *has_writers) {
-    return with_hal([&](Hal &hal) {
-        const auto info = hal.signal(name);
+    return with_hal([&](Instance &hal) {
+        const auto info = hal.signals().find(name);
         if (info && has_writers != nullptr) {
             *has_writers = info->writers > 0;
         }
@@ -224,15 +219,15 @@ int hal_get_signal_value_by_name(const char *name, hal_type_t *type, hal_data_u 
 }
 
 int hal_get_param_value_by_name(const char *name, hal_type_t *type, hal_data_u **data) {
-    return with_hal([&](Hal &hal) { return hand_out(hal, hal.param(name), type, data); });
+    return with_hal([&](Instance &hal) { return hand_out(hal, hal.params().find(name), type, data); });
 }
 
 // ---- functions and threads
 
 int hal_export_funct(const char *name, void (*funct)(void *, long), void *arg, int uses_fp, int reentrant,
                      int comp_id) {
-    return with_hal([&](Hal &hal) {
-        return status_of(hal.new_funct(name, funct, arg, comp_id, reentrant != 0, uses_fp != 0));
+    return with_hal([&](Instance &hal) {
+        return hal.functions().create(name, {funct, arg, reentrant != 0, uses_fp != 0}, comp_id);
     });
 }
 
@@ -250,43 +245,43 @@ int hal_export_functf(void (*funct)(void *, long), void *arg, int uses_fp, int r
     return hal_export_funct(name, funct, arg, uses_fp, reentrant, comp_id);
 }
 
-int hal_create_thread(const char *name, unsigned long period_nsec, int uses_fp) {
-    return with_hal([&](Hal &hal) {
-        return status_of(hal.new_thread(name, static_cast<std::int64_t>(period_nsec), uses_fp != 0));
-    });
+int hal_create_thread(const char *name, unsigned long period_nsec, int /*uses_fp*/) {
+    return with_hal(
+        [&](Instance &hal) { return hal.threads().create(name, static_cast<std::int64_t>(period_nsec)); });
 }
 
 int hal_thread_delete(const char *name) {
-    return with_hal([&](Hal &hal) { return status_of(hal.delete_thread(name)); });
+    return with_hal([&](Instance &hal) { return hal.threads().remove(name); });
 }
 
 int hal_add_funct_to_thread(const char *funct_name, const char *thread_name, int position) {
-    return with_hal([&](Hal &hal) { return status_of(hal.add_function(funct_name, thread_name, position)); });
+    return with_hal(
+        [&](Instance &hal) { return hal.threads().add_function(funct_name, thread_name, position); });
 }
 
 int hal_init_funct_to_thread(const char *funct_name, const char *thread_name, int position) {
     return with_hal(
-        [&](Hal &hal) { return status_of(hal.add_init_function(funct_name, thread_name, position)); });
+        [&](Instance &hal) { return hal.threads().add_init_function(funct_name, thread_name, position); });
 }
 
 int hal_del_funct_from_thread(const char *funct_name, const char *thread_name) {
-    return with_hal([&](Hal &hal) { return status_of(hal.remove_function(funct_name, thread_name)); });
+    return with_hal([&](Instance &hal) { return hal.threads().remove_function(funct_name, thread_name); });
 }
 
 int hal_start_threads(void) {
-    return with_hal([&](Hal &hal) { return status_of(hal.start_threads()); });
+    return with_hal([&](Instance &hal) { return hal.threads().start(); });
 }
 
 int hal_stop_threads(void) {
-    return with_hal([&](Hal &hal) { return status_of(hal.stop_threads()); });
+    return with_hal([&](Instance &hal) { return hal.threads().stop(); });
 }
 
 int hal_set_lock(unsigned char lock_type) {
-    return with_hal([&](Hal &hal) { return status_of(hal.set_lock(lock_type)); });
+    return with_hal([&](Instance &hal) { return hal.set_lock(lock_type); });
 }
 
 unsigned char hal_get_lock(void) {
-    Hal *hal = current();
+    Instance *hal = current();
     return hal == nullptr ? 0 : hal->lock();
 }
 

@@ -9,8 +9,6 @@
 namespace mw::hal::capi {
 namespace {
 
-using detail::refuse;
-
 Type type_of(hal_type_t type) {
     return static_cast<Type>(type);
 }
@@ -31,23 +29,24 @@ struct FormattedName {
 };
 
 int new_pin(const char *name, hal_type_t type, hal_pin_dir_t dir, void **slot, int comp_id) {
-    return with_hal([&](Hal &hal) {
-        return status_of(hal.new_pin(name, type_of(type), static_cast<Dir>(dir), slot, comp_id));
+    return with_hal([&](Instance &hal) {
+        return hal.pins().create(name, type_of(type), static_cast<Dir>(dir), slot, comp_id);
     });
 }
 
 int new_param(const char *name, hal_type_t type, hal_param_dir_t dir, const volatile void *address,
               int comp_id) {
-    return with_hal([&](Hal &hal) {
-        return status_of(
-            hal.new_param(name, type_of(type), static_cast<Dir>(dir), const_cast<void *>(address), comp_id));
+    return with_hal([&](Instance &hal) {
+        return hal.params().create(name, type_of(type), static_cast<Dir>(dir), const_cast<void *>(address),
+                                   comp_id);
     });
 }
 
 int set_param(const char *name, const Value &value) {
-    return with_hal([&](Hal &hal) {
-        const auto param = hal.get_param(name);
-        return param ? status_of(hal.set(name, value)) : status_of(Result<>(std::unexpected(param.error())));
+    return with_hal([&](Instance &hal) {
+        const auto param = hal.params().get(name);
+        return param ? status_of(hal.values().set(name, value))
+                     : status_of(Result<>(std::unexpected(param.error())));
     });
 }
 
@@ -55,19 +54,19 @@ int set_param(const char *name, const Value &value) {
 template <class Ref>
 int new_reference(int comp_id, hal_pdir_t dir, Ref *reference, const Value &start, const char *name) {
     auto **ref = reinterpret_cast<void **>(reference);
-    return with_hal([&](Hal &hal) {
+    return with_hal([&](Instance &hal) {
         if (hal_pdir_is_pin(dir) == 0) {
-            void *memory = hal.allocate(sizeof(std::uint64_t));
+            void *memory = hal.memory().allocate(sizeof(std::uint64_t));
             if (memory == nullptr) {
-                return status_of(Result<>(refuse(ENOMEM, "no HAL memory left")));
+                return complain(ENOMEM, "no HAL memory left");
             }
             *ref = memory;
-            hal.impl().write(hal.impl().segment.offset_of(memory), start);
+            store_value(memory, start);
             return new_param(name, static_cast<hal_type_t>(start.type), dir, memory, comp_id);
         }
         const int status = new_pin(name, static_cast<hal_type_t>(start.type), dir, ref, comp_id);
         if (status == 0) {
-            hal.impl().write(hal.impl().segment.offset_of(*ref), start);
+            store_value(*ref, start);
         }
         return status;
     });
@@ -103,11 +102,11 @@ int hal_param_set(const char *name, hal_type_t type, void *value_addr) {
 }
 
 int hal_param_new_fake(int compid, hal_refs_u *refs) {
-    return with_hal([&](Hal &hal) {
-        if (refs == nullptr || !hal.component(compid)) {
+    return with_hal([&](Instance &hal) {
+        if (refs == nullptr || !hal.components().find(compid)) {
             return complain(EINVAL, fmt::format("there is no component {}", compid));
         }
-        refs->p = hal.allocate(sizeof(std::uint64_t));
+        refs->p = hal.memory().allocate(sizeof(std::uint64_t));
         return refs->p == nullptr ? complain(ENOMEM, "no HAL memory left") : 0;
     });
 }

@@ -6,22 +6,22 @@
 #include <cstring>
 
 #include "hal/capi/status.hh"
+#include "hal/core/port_queue.hh"
 
 using namespace mw::hal;
 using namespace mw::hal::capi;
-using namespace mw::hal::detail;
 
 namespace {
 
 /// The queue behind a pin, or null.
 PortQueue *queue_of(const hal_port_t *port) noexcept {
-    Hal *hal = current();
+    Instance *hal = current();
     if (hal == nullptr || port == nullptr) {
         return nullptr;
     }
-    // Acquire: pairs with the release of make_queue.
+    // Acquire: pairs with the release when the queue is made.
     const int offset = __atomic_load_n(port, __ATOMIC_ACQUIRE);
-    return hal->impl().segment.at<PortQueue>(static_cast<Offset>(offset));
+    return static_cast<PortQueue *>(hal->memory().at(static_cast<Reference>(offset)));
 }
 
 char *bytes_of(PortQueue &queue) noexcept {

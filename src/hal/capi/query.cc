@@ -13,7 +13,6 @@
 using namespace mw;
 using namespace mw::hal;
 using namespace mw::hal::capi;
-using namespace mw::hal::detail;
 
 namespace {
 
@@ -102,7 +101,7 @@ void fill(hal_query_t &query, const CompInfo &info) {
     query.comp.insmod = info.is_loaded_by_loadrt ? texts().keep(info.insmod_args) : nullptr;
 }
 
-void fill(hal_query_t &query, const FunctInfo &info) {
+void fill(hal_query_t &query, const FunctionInfo &info) {
     query.qtype = HAL_QTYPE_FUNCT;
     query.funct = {};
     query.funct.name = query.name = texts().keep(info.name);
@@ -144,56 +143,128 @@ int call_each(const std::vector<Info> &infos, hal_query_cb cb, void *arg) {
     return 0;
 }
 
-template <class Work>
-int list(hal_query_cb cb, Work work) {
+/// Calls back for what `found(hal, pattern)` returns.
+template <class Find>
+int list(const hal_query_t *query, hal_query_cb cb, void *arg, Find found) {
     if (cb == nullptr) {
         return -EINVAL;
     }
-    return with_hal([&](Hal &hal) {
+    const std::string pattern = pattern_of(query);
+    return with_hal([&](Instance &hal) {
         texts().clear();
-        return work(hal);
+        return call_each(found(hal, pattern), cb, arg);
     });
 }
 
-/// Fills `query` with the pin or parameter of its name; a parameter takes precedence.
-int look_up_p(const Hal &hal, hal_query_t &query) {
-    if (query.name == nullptr) {
+/// Fills `query` with `info`, if both are there.
+template <class Info>
+int give(const Result<Info> &info, hal_query_t *query) {
+    if (!info || query == nullptr) {
+        return info ? -EINVAL : -ENOENT;
+    }
+    texts().clear();
+    fill(*query, *info);
+    return 0;
+}
+
+/// Pins and parameters: their part of a query, and how they are found and set. A parameter takes precedence.
+struct PinsAndParams {
+    static hal_query_pp_t &part(hal_query_t &query) { return query.pp; }
+    static bool isFilled(Instance &hal, hal_query_t &query, const std::string &name) {
+        const bool wants_param = wants(&query, HAL_QTYPE_PARAM);
+        const bool wants_pin = wants(&query, HAL_QTYPE_PIN);
+        return (wants_param && give(hal.params().find(name), &query) == 0) ||
+               (wants_pin && give(hal.pins().find(name), &query) == 0);
+    }
+    static Result<> set(Instance &hal, const std::string &name, const Value &value) {
+        return hal.values().set(name, value);
+    }
+};
+
+/// As PinsAndParams.
+struct OfSignals {
+    static hal_query_sig_t &part(hal_query_t &query) { return query.sig; }
+    static bool isFilled(Instance &hal, hal_query_t &query, const std::string &name) {
+        return give(hal.signals().find(name), &query) == 0;
+    }
+    static Result<> set(Instance &hal, const std::string &name, const Value &value) {
+        return hal.signals().set(name, value);
+    }
+};
+
+/// Fills `query` with the object of its name.
+template <class Objects>
+int look_up(Instance &hal, hal_query_t *query) {
+    if (query == nullptr || query->name == nullptr) {
         return -EINVAL;
     }
-    const std::string name = query.name;
-    const bool wants_param = wants(&query, HAL_QTYPE_PARAM);
-    const bool wants_pin = wants(&query, HAL_QTYPE_PIN);
+    const std::string name = query->name;
+    if (Objects::isFilled(hal, *query, name)) {
+        return 0;
+    }
     texts().clear();
-    if (const auto param = hal.param(name); wants_param && param) {
-        fill(query, *param);
-        return 0;
-    }
-    if (const auto pin = hal.pin(name); wants_pin && pin) {
-        fill(query, *pin);
-        return 0;
-    }
-    query.name = texts().keep(name);
+    query->name = texts().keep(name);
     return -ENOENT;
 }
 
-int look_up_s(const Hal &hal, hal_query_t &query) {
-    if (query.name == nullptr) {
-        return -EINVAL;
-    }
-    const std::string name = query.name;
-    texts().clear();
-    if (const auto signal = hal.signal(name)) {
-        fill(query, *signal);
-        return 0;
-    }
-    query.name = texts().keep(name);
-    return -ENOENT;
+template <class Objects>
+int get(hal_query_t *query, hal_query_cb cb, void *arg) {
+    return with_hal([&](Instance &hal) {
+        const int status = look_up<Objects>(hal, query);
+        return status == 0 && cb != nullptr ? cb(query, arg) : status;
+    });
 }
 
-rtapi_intptr_t reference_of(Hal &hal, const char *name, hal_type_t type) {
-    const auto address = hal.address_of(name, static_cast<Type>(type));
-    return address ? static_cast<rtapi_intptr_t>(hal.impl().segment.offset_of(const_cast<void *>(*address)))
-                   : 0;
+template <class Objects>
+int set(hal_query_t *query, hal_query_cb cb, void *arg) {
+    return with_hal([&](Instance &hal) {
+        if (query == nullptr) {
+            return -EINVAL;
+        }
+        auto &part = Objects::part(*query);
+        const hal_query_value_u asked = part.value;
+        if (const int status = look_up<Objects>(hal, query); status != 0) {
+            return status;
+        }
+        if (cb == nullptr) {
+            part.value = asked;
+        } else if (const int answer = cb(query, arg); answer != 0) {
+            return answer;
+        }
+        const std::string name = part.name;
+        return status_of(Objects::set(hal, name, from_union(static_cast<Type>(part.type), part.value)));
+    });
+}
+
+template <class Objects>
+int get_reference(hal_query_t *query) {
+    return with_hal([&](Instance &hal) {
+        const int status = look_up<Objects>(hal, query);
+        if (status == 0) {
+            auto &part = Objects::part(*query);
+            const auto address = hal.values().address_of(part.name, static_cast<Type>(part.type));
+            part.ref = address ? static_cast<rtapi_intptr_t>(hal.memory().reference_of(*address)) : 0;
+        }
+        return status;
+    });
+}
+
+/// Calls back for each function of a thread, in order.
+int call_functions(const ThreadInfo &thread, hal_query_cb cb, void *arg) {
+    int answer = 0;
+    for (const bool is_init : {true, false}) {
+        int position = 0;
+        for (const std::string &function : is_init ? thread.init_functions : thread.functions) {
+            hal_query_t one{};
+            fill(one, thread);
+            one.qtype = HAL_QTYPE_THREAD_FUNCT;
+            one.thread.funct = texts().keep(function);
+            one.thread.position = ++position;
+            one.thread.is_init = is_init ? 1 : 0;
+            answer = answer != 0 ? answer : cb(&one, arg);
+        }
+    }
+    return answer;
 }
 
 }  // namespace
@@ -201,195 +272,103 @@ rtapi_intptr_t reference_of(Hal &hal, const char *name, hal_type_t type) {
 extern "C" {
 
 int hal_comp_by_id(int comp_id, hal_query_t *q) {
-    return with_hal([&](Hal &hal) {
-        const auto info = hal.component(comp_id);
-        if (!info || q == nullptr) {
-            return info ? -EINVAL : -ENOENT;
-        }
-        texts().clear();
-        fill(*q, *info);
-        return 0;
-    });
+    return with_hal([&](Instance &hal) { return give(hal.components().find(comp_id), q); });
 }
 
 int hal_comp_by_name(const char *name, hal_query_t *q) {
-    return with_hal([&](Hal &hal) {
-        const auto info = hal.component(name == nullptr ? "" : name);
-        if (!info || q == nullptr) {
-            return info ? -EINVAL : -ENOENT;
-        }
-        texts().clear();
-        fill(*q, *info);
-        return 0;
-    });
+    return with_hal(
+        [&](Instance &hal) { return give(hal.components().find(name == nullptr ? "" : name), q); });
 }
 
-int hal_list_comp(hal_query_t *q, hal_query_cb cb, void *arg) {
-    const std::string pattern = pattern_of(q);
-    return list(cb, [&](Hal &hal) { return call_each(hal.components(pattern), cb, arg); });
-}
+/// hal_list_SUFFIX for what REGISTRY lists.
+#define MW_EXPORT_LIST(SUFFIX, REGISTRY)                                                                     \
+    int hal_list_##SUFFIX(hal_query_t *q, hal_query_cb cb, void *arg) {                                      \
+        return list(q, cb, arg,                                                                              \
+                    [](Instance &hal, const std::string &pattern) { return hal.REGISTRY().list(pattern); }); \
+    }
+
+/// hal_get_SUFFIX, hal_set_SUFFIX and hal_getref_SUFFIX for OBJECTS.
+#define MW_EXPORT_QUERY(SUFFIX, OBJECTS)                                                                     \
+    int hal_get_##SUFFIX(hal_query_t *query, hal_query_cb cb, void *arg) {                                   \
+        return get<OBJECTS>(query, cb, arg);                                                                 \
+    }                                                                                                        \
+    int hal_set_##SUFFIX(hal_query_t *query, hal_query_cb cb, void *arg) {                                   \
+        return set<OBJECTS>(query, cb, arg);                                                                 \
+    }                                                                                                        \
+    int hal_getref_##SUFFIX(hal_query_t *query) {                                                            \
+        return get_reference<OBJECTS>(query);                                                                \
+    }
+
+MW_EXPORT_LIST(comp, components)
+MW_EXPORT_LIST(s, signals)
+MW_EXPORT_LIST(funct, functions)
+MW_EXPORT_QUERY(p, PinsAndParams)
+MW_EXPORT_QUERY(s, OfSignals)
 
 int hal_list_p(hal_query_t *q, hal_query_cb cb, void *arg) {
+    if (cb == nullptr) {
+        return -EINVAL;
+    }
     const std::string pattern = pattern_of(q);
-    return list(cb, [&](Hal &hal) {
-        int answer = wants(q, HAL_QTYPE_PIN) ? call_each(hal.pins(pattern), cb, arg) : 0;
+    return with_hal([&](Instance &hal) {
+        texts().clear();
+        int answer = wants(q, HAL_QTYPE_PIN) ? call_each(hal.pins().list(pattern), cb, arg) : 0;
         if (answer == 0 && wants(q, HAL_QTYPE_PARAM)) {
-            answer = call_each(hal.params(pattern), cb, arg);
+            answer = call_each(hal.params().list(pattern), cb, arg);
         }
         return answer;
     });
 }
 
-int hal_list_s(hal_query_t *q, hal_query_cb cb, void *arg) {
-    const std::string pattern = pattern_of(q);
-    return list(cb, [&](Hal &hal) { return call_each(hal.signals(pattern), cb, arg); });
-}
-
 int hal_list_p_s(hal_query_t *q, hal_query_cb cb, void *arg) {
-    if (q == nullptr || q->name == nullptr) {
+    if (q == nullptr || q->name == nullptr || cb == nullptr) {
         return -EINVAL;
     }
     const std::string name = q->name;
-    return list(cb, [&](Hal &hal) {
-        if (!hal.signal(name)) {
+    return with_hal([&](Instance &hal) {
+        texts().clear();
+        if (!hal.signals().find(name)) {
             return -ENOENT;
         }
-        std::vector<PinInfo> linked = hal.pins();
+        std::vector<PinInfo> linked = hal.pins().list();
         std::erase_if(linked, [&](const PinInfo &pin) { return pin.signal != name; });
         return call_each(linked, cb, arg);
     });
 }
 
-int hal_list_funct(hal_query_t *q, hal_query_cb cb, void *arg) {
-    const std::string pattern = pattern_of(q);
-    return list(cb, [&](Hal &hal) { return call_each(hal.functs(pattern), cb, arg); });
-}
-
 int hal_list_thread(hal_query_t *q, hal_query_cb cb, void *arg) {
+    if (cb == nullptr) {
+        return -EINVAL;
+    }
     const std::string pattern = pattern_of(q);
     const bool wants_functions = q != nullptr && q->qtype == HAL_QTYPE_THREAD_FUNCT;
-    return list(cb, [&](Hal &hal) {
-        const std::vector<ThreadInfo> threads = hal.threads(pattern);
-        if (!wants_functions) {
-            return call_each(threads, cb, arg);
-        }
-        int answer = 0;
+    return with_hal([&](Instance &hal) {
+        texts().clear();
+        const std::vector<ThreadInfo> threads = hal.threads().list(pattern);
+        int answer = wants_functions ? 0 : call_each(threads, cb, arg);
         for (const ThreadInfo &thread : threads) {
-            const auto call = [&](const std::string &function, int position, bool is_init) {
-                hal_query_t one{};
-                fill(one, thread);
-                one.qtype = HAL_QTYPE_THREAD_FUNCT;
-                one.thread.funct = texts().keep(function);
-                one.thread.position = position;
-                one.thread.is_init = is_init ? 1 : 0;
-                answer = answer != 0 ? answer : cb(&one, arg);
-            };
-            int position = 0;
-            for (const std::string &function : thread.init_functions) {
-                call(function, ++position, true);
-            }
-            position = 0;
-            for (const std::string &function : thread.functions) {
-                call(function, ++position, false);
-            }
+            answer = wants_functions && answer == 0 ? call_functions(thread, cb, arg) : answer;
         }
         return answer;
     });
 }
 
-int hal_get_p(hal_query_t *query, hal_query_cb cb, void *arg) {
-    return with_hal([&](Hal &hal) {
-        const int status = query == nullptr ? -EINVAL : look_up_p(hal, *query);
-        return status == 0 && cb != nullptr ? cb(query, arg) : status;
-    });
-}
-
-int hal_get_s(hal_query_t *query, hal_query_cb cb, void *arg) {
-    return with_hal([&](Hal &hal) {
-        const int status = query == nullptr ? -EINVAL : look_up_s(hal, *query);
-        return status == 0 && cb != nullptr ? cb(query, arg) : status;
-    });
-}
-
-int hal_set_p(hal_query_t *query, hal_query_cb cb, void *arg) {
-    return with_hal([&](Hal &hal) {
-        if (query == nullptr) {
-            return -EINVAL;
-        }
-        const hal_query_value_u asked = query->pp.value;
-        if (const int status = look_up_p(hal, *query); status != 0) {
-            return status;
-        }
-        if (cb == nullptr) {
-            query->pp.value = asked;
-        } else if (const int answer = cb(query, arg); answer != 0) {
-            return answer;
-        }
-        const std::string name = query->pp.name;
-        return status_of(hal.set(name, from_union(static_cast<Type>(query->pp.type), query->pp.value)));
-    });
-}
-
-int hal_set_s(hal_query_t *query, hal_query_cb cb, void *arg) {
-    return with_hal([&](Hal &hal) {
-        if (query == nullptr) {
-            return -EINVAL;
-        }
-        const hal_query_value_u asked = query->sig.value;
-        if (const int status = look_up_s(hal, *query); status != 0) {
-            return status;
-        }
-        if (cb == nullptr) {
-            query->sig.value = asked;
-        } else if (const int answer = cb(query, arg); answer != 0) {
-            return answer;
-        }
-        const std::string name = query->sig.name;
-        return status_of(
-            hal.set_signal(name, from_union(static_cast<Type>(query->sig.type), query->sig.value)));
-    });
-}
-
-int hal_getref_p(hal_query_t *query) {
-    return with_hal([&](Hal &hal) {
-        const int status = query == nullptr ? -EINVAL : look_up_p(hal, *query);
-        if (status == 0) {
-            query->pp.ref = reference_of(hal, query->pp.name, query->pp.type);
-        }
-        return status;
-    });
-}
-
-int hal_getref_s(hal_query_t *query) {
-    return with_hal([&](Hal &hal) {
-        const int status = query == nullptr ? -EINVAL : look_up_s(hal, *query);
-        if (status == 0) {
-            query->sig.ref = reference_of(hal, query->sig.name, query->sig.type);
-        }
-        return status;
-    });
-}
-
 void *hal_reference_map(rtapi_intptr_t ref) {
-    Hal *hal = current();
-    if (hal == nullptr || ref <= 0 || ref > static_cast<rtapi_intptr_t>(RESERVE)) {
-        return nullptr;
-    }
-    void *address = hal->impl().segment.at<void>(static_cast<Offset>(ref));
-    return hal->impl().segment.contains(address, sizeof(std::uint64_t)) ? address : nullptr;
+    Instance *hal = current();
+    return hal == nullptr ? nullptr : hal->memory().checked_at(ref, sizeof(std::uint64_t));
 }
 
 int hal_reference_unmap(const void *ref) {
-    const Hal *hal = current();
-    return hal != nullptr && ref != nullptr && hal->impl().segment.contains(ref, 1) ? 0 : -EINVAL;
+    Instance *hal = current();
+    return hal != nullptr && ref != nullptr && hal->memory().contains(ref, 1) ? 0 : -EINVAL;
 }
 
 int hal_statistics(hal_statistics_t *sts) {
-    return with_hal([&](Hal &hal) {
+    return with_hal([&](Instance &hal) {
         if (sts == nullptr) {
             return -EINVAL;
         }
-        const HalStatistics figures = hal.statistics();
+        const MemoryStatistics figures = hal.memory().statistics();
         *sts = {};
         sts->components = figures.components.active;
         sts->pins = figures.pins.active;
@@ -407,23 +386,22 @@ int hal_statistics(hal_statistics_t *sts) {
 // ---- constructors
 
 int hal_set_constructor(int comp_id, constructor make) {
-    return with_hal([&](Hal &hal) {
-        if (!hal.component(comp_id) || make == nullptr) {
+    return with_hal([&](Instance &hal) {
+        if (!hal.components().find(comp_id) || make == nullptr) {
             return complain(EINVAL,
                             fmt::format("there is no component {}, or no constructor is given", comp_id));
         }
-        Guard guard(hal.impl());
-        hal.impl().constructors[comp_id] = make;
+        hal.components().set_constructor(comp_id, make);
         return 0;
     });
 }
 
 int hal_comp_invoke_make(const char *compname, const char *newname, const char *arg) {
-    return with_hal([&](Hal &hal) {
+    return with_hal([&](Instance &hal) {
         if (compname == nullptr || newname == nullptr || *newname == '\0') {
             return complain(EINVAL, "a component and the name of the new instance are needed");
         }
-        const auto comp = hal.component(compname);
+        const auto comp = hal.components().find(compname);
         if (!comp) {
             return complain(comp.error());
         }
@@ -432,29 +410,24 @@ int hal_comp_invoke_make(const char *compname, const char *newname, const char *
                             fmt::format("component '{}' lives in process {}, which alone can make instances",
                                         compname, comp->pid));
         }
-        constructor make = nullptr;
-        {
-            Guard guard(hal.impl());
-            const auto found = hal.impl().constructors.find(comp->id);
-            make = found == hal.impl().constructors.end() ? nullptr : found->second;
-        }
+        const constructor make = hal.components().constructor(comp->id);
         if (make == nullptr) {
             return complain(ENOSYS,
                             fmt::format("component '{}' makes no instances once it is loaded", compname));
         }
         // Pins and functions can only be made while the component is not ready.
         const bool was_ready = comp->isReady;
-        (void)hal.set_ready(comp->id, false);
+        (void)hal.components().set_ready(comp->id, false);
         const int status = make(newname, arg == nullptr ? "" : arg);
-        (void)hal.set_ready(comp->id, was_ready);
+        (void)hal.components().set_ready(comp->id, was_ready);
         return status;
     });
 }
 
 int hal_comp_insmod_args(const char *compname, const char *args) {
-    return with_hal([&](Hal &hal) {
-        const auto comp = hal.component(compname == nullptr ? "" : compname);
-        return comp ? status_of(hal.set_insmod_args(comp->id, args == nullptr ? "" : args))
+    return with_hal([&](Instance &hal) {
+        const auto comp = hal.components().find(compname == nullptr ? "" : compname);
+        return comp ? status_of(hal.components().set_insmod_args(comp->id, args == nullptr ? "" : args))
                     : complain(comp.error());
     });
 }
@@ -468,9 +441,9 @@ void hal_enforce_exact_base_period(void) {
 }
 
 int hal_mutex_force_release(void) {
-    return with_hal([](Hal &hal) {
+    return with_hal([](Instance &hal) {
         // Taking the lock repairs the segment if its holder has died.
-        const Guard guard(hal.impl());
+        hal.memory().repair();
         return 0;
     });
 }

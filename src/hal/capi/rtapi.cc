@@ -13,7 +13,6 @@
 
 using namespace mw::hal;
 using namespace mw::hal::capi;
-using namespace mw::hal::detail;
 using mw::runtime::LogLevel;
 
 namespace {
@@ -30,14 +29,6 @@ void print_message(LogLevel level, bool always, const char *format, std::va_list
     } else {
         current_log().vprint(level, format, args);
     }
-}
-
-void run_planner(void *argument, std::int64_t period_ns) {
-    const auto *planner = static_cast<const PlannerRunner *>(argument);
-    const UseInstance use(planner->hal);
-    context().doing = "the planner of a module";
-    planner->function(planner->argument, period_ns);
-    context().doing = nullptr;
 }
 
 }  // namespace
@@ -57,8 +48,8 @@ rtapi_realtime_type_t rtapi_get_realtime_type(void) {
 }
 
 int rtapi_is_realtime(void) {
-    const Hal *hal = current();
-    return hal != nullptr && !hal->isVirtual() && hal->isRealtime() ? 1 : 0;
+    Instance *hal = current();
+    return hal != nullptr && !hal->isVirtual() && hal->host_status().isRealtime() ? 1 : 0;
 }
 
 int rtapi_is_kernelspace(void) {
@@ -115,13 +106,13 @@ rtapi_msg_handler_t rtapi_get_msg_handler(void) {
 }
 
 long long int rtapi_get_time(void) {
-    const Hal *hal = current();
+    const Instance *hal = current();
     return hal == nullptr ? 0 : hal->now_ns();
 }
 
 long long int rtapi_get_clocks(void) {
 #if defined(__x86_64__) || defined(__i386__)
-    const Hal *hal = current();
+    const Instance *hal = current();
     if (hal == nullptr || !hal->isVirtual()) {
         return static_cast<long long>(__builtin_ia32_rdtsc());
     }
@@ -134,7 +125,7 @@ long int rtapi_delay_max(void) {
 }
 
 void rtapi_delay(long int nsec) {
-    const Hal *hal = current();
+    const Instance *hal = current();
     if (hal == nullptr || hal->isVirtual()) {
         return;
     }
@@ -152,41 +143,27 @@ long simple_strtol(const char *nptr, char **endptr, int base) {
 }
 
 int rtapi_shmem_new(int key, int /*module_id*/, unsigned long int size) {
-    return with_hal([&](Hal &hal) {
-        Guard guard(hal.impl());
-        const auto block = hal.impl().open_block(key, size);
-        return block ? static_cast<int>(hal.impl().segment.offset_of(*block)) : complain(block.error());
+    return with_hal([&](Instance &hal) {
+        const auto block = hal.memory().open_block(key, size);
+        return block ? block->id : complain(block.error());
     });
 }
 
 int rtapi_shmem_getptr(int shmem_id, void **ptr) {
-    Hal *hal = current();
+    Instance *hal = current();
     if (hal == nullptr || shmem_id <= 0) {
         return -EINVAL;
     }
-    const auto *block = hal->impl().segment.at<BlockRecord>(static_cast<Offset>(shmem_id));
-    *ptr = hal->impl().segment.at<void>(block->memory);
+    *ptr = hal->memory().block_memory(shmem_id);
     return 0;
 }
 
 int rtapi_shmem_delete(int shmem_id, int /*module_id*/) {
-    return with_hal([&](Hal &hal) {
-        Guard guard(hal.impl());
-        auto *block = hal.impl().segment.at<BlockRecord>(static_cast<Offset>(shmem_id));
-        if (shmem_id <= 0 || block->users == 0) {
-            return -EINVAL;
-        }
-        --block->users;
-        return 0;
-    });
+    return with_hal([&](Instance &hal) { return hal.memory().close_block(shmem_id) ? 0 : -EINVAL; });
 }
 
 void rtapi_mp_register(const struct rtapi_mp_info *info) {
-    // For programs and libraries that include the macros without being loaded as modules there is no
-    // receiver.
-    if (auto *parameters = context().parameters) {
-        parameters->push_back(info);
-    }
+    Loader::add_parameter(info);
 }
 
 // ---- rtapi_string.h
@@ -236,103 +213,65 @@ void rtapi_argv_free(char **argv) {
 // ---- millwright_ext.h
 
 void *mw_ext_find_symbol(const char *name) {
-    const Hal *hal = current();
-    return hal == nullptr || hal->impl().loader == nullptr ? nullptr : hal->impl().loader->find_symbol(name);
+    Instance *hal = current();
+    return hal == nullptr || hal->loader() == nullptr ? nullptr : hal->loader()->find_symbol(name);
 }
 
 int mw_ext_use_module(const char *symbol, int comp_id) {
-    return with_hal([&](Hal &hal) {
-        if (hal.impl().loader == nullptr) {
-            return -ENOENT;
-        }
-        return status_of(hal.impl().loader->use(symbol, comp_id));
+    return with_hal([&](Instance &hal) {
+        return hal.loader() == nullptr ? -ENOENT : status_of(hal.loader()->use(symbol, comp_id));
     });
 }
 
 int mw_ext_planner_new(const char *name, long long period_ns, void (*function)(void *, long long),
                        void *arg) {
-    return with_hal([&](Hal &hal) {
-        Guard guard(hal.impl());
-        if (hal.scheduler() == nullptr) {
-            return complain(EINVAL, "planners can only be made in the realtime process");
-        }
-        auto runner = std::make_unique<PlannerRunner>();
-        runner->hal = &hal;
-        runner->function = function;
-        runner->argument = arg;
-        mw::runtime::PeriodicSpec spec;
-        spec.name = name;
-        spec.period_ns = period_ns;
-        spec.order = mw::runtime::Order::PLANNER;
-        spec.function = &run_planner;
-        spec.argument = runner.get();
-        const auto periodic = hal.scheduler()->add(spec);
-        if (!periodic) {
-            return complain(periodic.error());
-        }
-        runner->periodic = *periodic;
-        runner->id = ++hal.impl().last_planner_id;
-        hal.impl().planners.push_back(std::move(runner));
-        return hal.impl().last_planner_id;
+    return with_hal([&](Instance &hal) {
+        const auto id = hal.planners().create(name, period_ns, {function, arg});
+        return id ? *id : complain(id.error());
     });
 }
 
 int mw_ext_planner_delete(int id) {
-    return with_hal([&](Hal &hal) {
-        Guard guard(hal.impl());
-        auto &planners = hal.impl().planners;
-        const auto found = std::find_if(planners.begin(), planners.end(),
-                                        [id](const auto &planner) { return planner->id == id; });
-        if (found == planners.end()) {
-            return -EINVAL;
-        }
-        hal.scheduler()->remove((*found)->periodic);
-        planners.erase(found);
-        return 0;
-    });
+    return with_hal([&](Instance &hal) { return hal.planners().remove(id) ? 0 : -EINVAL; });
 }
 
 int mw_ext_pin_safe_value(const char *pin_name, const void *value) {
-    return with_hal([&](Hal &hal) {
-        const auto info = hal.pin(pin_name);
+    return with_hal([&](Instance &hal) {
+        const auto info = hal.pins().find(pin_name);
         if (!info) {
             return complain(info.error());
         }
         Value safe{info->type, 0};
         const bool wide = info->type == Type::FLOAT || info->type == Type::S64 || info->type == Type::U64;
         std::memcpy(&safe.bits, value, info->type == Type::BIT ? 1 : wide ? 8 : 4);
-        return status_of(hal.set_safe_value(pin_name, safe));
+        return status_of(hal.pins().set_safe_value(pin_name, safe));
     });
 }
 
 int mw_ext_watch_controller(rtapi_u32 *is_gone, const rtapi_u32 *is_safe, int comp_id) {
-    return with_hal([&](Hal &hal) {
+    return with_hal([&](Instance &hal) {
         if (!hal.isHost() || is_gone == nullptr || is_safe == nullptr) {
             return complain(EINVAL, "only a realtime module can watch the controlling process");
         }
-        hal.impl().controller_watches.push_back({is_gone, is_safe, comp_id});
+        hal.controller_watches().add(is_gone, is_safe, comp_id);
         return 0;
     });
 }
 
 int mw_ext_count_looks(rtapi_u32 *looks, int comp_id) {
-    return with_hal([&](Hal &hal) {
-        for (detail::ControllerWatch &watch : hal.impl().controller_watches) {
-            if (watch.comp_id == comp_id) {
-                watch.looks = looks;
-                return 0;
-            }
-        }
-        return complain(EINVAL, "the component does not watch the controlling process");
+    return with_hal([&](Instance &hal) {
+        return hal.controller_watches().count_checks(comp_id, looks)
+                   ? 0
+                   : complain(EINVAL, "the component does not watch the controlling process");
     });
 }
 
 long long mw_ext_thread_period(const char *name) {
-    const Hal *hal = current();
+    Instance *hal = current();
     if (hal == nullptr || name == nullptr) {
         return 0;
     }
-    for (const ThreadInfo &thread : hal->threads()) {
+    for (const ThreadInfo &thread : hal->threads().list()) {
         if (thread.name == name) {
             return thread.period_ns;
         }
@@ -340,22 +279,20 @@ long long mw_ext_thread_period(const char *name) {
     return 0;
 }
 
+static_assert(sizeof(std::atomic<std::uint32_t>) == sizeof(rtapi_u32));
+
 const rtapi_u32 *mw_ext_links(void) {
-    static_assert(sizeof(Header::links) == sizeof(rtapi_u32));
-    Hal *hal = current();
-    return hal != nullptr ? reinterpret_cast<const rtapi_u32 *>(&hal->impl().segment.header().links)
-                          : nullptr;
+    Instance *hal = current();
+    return hal != nullptr ? reinterpret_cast<const rtapi_u32 *>(&hal->pins().link_changes()) : nullptr;
 }
 
 rtapi_u32 *mw_ext_lost_positions(void) {
-    static_assert(sizeof(Header::lost_positions) == sizeof(rtapi_u32));
-    Hal *hal = current();
-    return hal != nullptr ? reinterpret_cast<rtapi_u32 *>(&hal->impl().segment.header().lost_positions)
-                          : nullptr;
+    Instance *hal = current();
+    return hal != nullptr ? reinterpret_cast<rtapi_u32 *>(&hal->host_status().lost_positions()) : nullptr;
 }
 
 int mw_ext_is_virtual(void) {
-    const Hal *hal = current();
+    const Instance *hal = current();
     return hal != nullptr && hal->isVirtual() ? 1 : 0;
 }
 

@@ -3,13 +3,17 @@
 #pragma once
 
 #include <cerrno>
+#include <string>
+#include <type_traits>
 
-#include "hal/core/detail/impl.hh"
+#include <fmt/core.h>
+
+#include "hal/core/instance.hh"
 #include "hal/include/hal.h"
 
 namespace mw::hal::capi {
 
-/// Logs an error of Hal; returns the negated errno of Hal.
+/// Logs an error of the instance; returns the negated errno that it set.
 int complain(const Error &error) noexcept;
 
 /// Logs the message; returns the negated code.
@@ -21,14 +25,19 @@ int status_of(const Result<> &result) noexcept;
 /// The log of the current instance, or of the process.
 runtime::Log &current_log() noexcept;
 
-/// Runs `work` on the current instance; -EINVAL when there is none.
+/// Runs `work` on the current instance; -EINVAL when there is none. A Result<> becomes 0 or the result of
+/// complain().
 template <class Work>
 int with_hal(Work work) {
-    Hal *hal = current();
+    Instance *hal = current();
     if (hal == nullptr) {
         return complain(EINVAL, "this process has joined no HAL instance: call hal_init first");
     }
-    return work(*hal);
+    if constexpr (std::is_same_v<decltype(work(*hal)), Result<>>) {
+        return status_of(work(*hal));
+    } else {
+        return work(*hal);
+    }
 }
 
 }  // namespace mw::hal::capi

@@ -15,13 +15,13 @@
 #include <mutex>
 
 #include "hal/capi/status.hh"
+#include "hal/core/crash_report.hh"
 #include "runtime/alternate_stack.hh"
 #include "runtime/scheduler.hh"
 
 using namespace mw;
 using namespace mw::hal;
 using namespace mw::hal::capi;
-using namespace mw::hal::detail;
 
 namespace {
 
@@ -43,7 +43,7 @@ struct Task {
     void *argument = nullptr;
     int priority = PRIORITY_LOWEST;
     std::size_t stack_size = 0;
-    Hal *hal = nullptr;
+    Instance *hal = nullptr;
     std::int64_t period_ns = 0;  ///< 0: free-running
     std::int64_t next_ns = 0;    ///< of the task's thread
     pthread_t thread{};
@@ -71,7 +71,7 @@ struct Registry {
 struct Semaphore {
     // Released after the rest is filled; 0: free. An id is the slot number plus a multiple of SEMAPHORES.
     std::atomic<int> id{0};
-    const Hal *hal = nullptr;
+    const Instance *hal = nullptr;
     int key = 0;
     int users = 0;
     sem_t sem{};
@@ -109,7 +109,7 @@ void *run_task(void *argument) {
     own_task() = task;
     const UseInstance use(task->hal);
     const runtime::AlternateStack for_crashes;
-    context().doing = "a task of a module (rtapi_task_start)";
+    set_activity("a task of a module (rtapi_task_start)");
     task->code(task->argument);
     return nullptr;
 }
@@ -126,7 +126,7 @@ int start(Task &task, std::int64_t period_ns) {
         return complain(error, fmt::format("task {} does not start: {}", task.id, std::strerror(error)));
     }
     task.started = true;
-    if (task.hal->isRealtime()) {
+    if (task.hal->host_status().isRealtime()) {
         sched_param param{};
         param.sched_priority = task.priority;
         ::pthread_setschedparam(task.thread, SCHED_FIFO, &param);
@@ -154,12 +154,8 @@ struct Fifo {
 constexpr int FIFO_KEY = 0x52540000;
 
 Fifo *find_fifo(int id) {
-    Hal *hal = current();
-    if (hal == nullptr || id <= 0) {
-        return nullptr;
-    }
-    void *address = hal->impl().segment.at<void>(static_cast<Offset>(id));
-    return hal->impl().segment.contains(address, sizeof(Fifo)) ? static_cast<Fifo *>(address) : nullptr;
+    Instance *hal = current();
+    return hal == nullptr ? nullptr : static_cast<Fifo *>(hal->memory().checked_at(id, sizeof(Fifo)));
 }
 
 }  // namespace
@@ -184,7 +180,7 @@ int rtapi_prio_next_lower(int prio) {
 
 int rtapi_task_new(void (*taskcode)(void *), void *arg, int prio, int /*owner*/, unsigned long int stacksize,
                    int /*uses_fp*/) {
-    return with_hal([&](Hal &hal) {
+    return with_hal([&](Instance &hal) {
         if (taskcode == nullptr || prio < PRIORITY_LOWEST || prio > PRIORITY_HIGHEST) {
             return complain(EINVAL, "a task needs code and a priority of rtapi_prio_*");
         }
@@ -296,12 +292,12 @@ void rtapi_task_self_resync(void) {
 }
 
 long long rtapi_task_pll_get_reference(void) {
-    Hal *hal = current();
+    Instance *hal = current();
     return hal == nullptr || hal->scheduler() == nullptr ? 0 : hal->scheduler()->current_release_ns();
 }
 
 int rtapi_task_pll_set_correction(long value) {
-    Hal *hal = current();
+    Instance *hal = current();
     const bool set =
         hal != nullptr && hal->scheduler() != nullptr && hal->scheduler()->set_correction_ns(value);
     return set ? 0 : -EINVAL;
@@ -310,7 +306,7 @@ int rtapi_task_pll_set_correction(long value) {
 // ---- semaphores
 
 int rtapi_sem_new(int key, int /*module_id*/) {
-    return with_hal([&](Hal &hal) {
+    return with_hal([&](Instance &hal) {
         Registry &all = registry();
         const std::lock_guard lock(all.mutex);
         Semaphore *vacant = nullptr;
@@ -385,36 +381,27 @@ int rtapi_sem_try(int sem_id) {
 // ---- queues of bytes
 
 int rtapi_fifo_new(int key, int /*module_id*/, unsigned long int size, char mode) {
-    return with_hal([&](Hal &hal) {
+    return with_hal([&](Instance &hal) {
         const bool is_mode = mode == 'R' || mode == 'r' || mode == 'W' || mode == 'w';
         if (!is_mode || size == 0 || size > (1U << 27U) || key == 0) {
             return complain(EINVAL, "a queue needs a key, a size above 0 and the mode R or W");
         }
         const auto room = std::bit_ceil(static_cast<std::uint32_t>(size));
-        Guard guard(hal.impl());
-        const auto block = hal.impl().open_block(key ^ FIFO_KEY, sizeof(Fifo) + room);
+        const auto block = hal.memory().open_block(key ^ FIFO_KEY, sizeof(Fifo) + room);
         if (!block) {
             return complain(block.error());
         }
-        auto *fifo = hal.impl().segment.at<Fifo>((*block)->memory);
-        if (fifo->size == 0) {
-            fifo->size = room;
-        }
-        return static_cast<int>((*block)->memory);
+        // Of two processes that open it at once, one sets the size.
+        std::uint32_t unset = 0;
+        std::atomic_ref(static_cast<Fifo *>(hal.memory().at(block->memory))->size)
+            .compare_exchange_strong(unset, room);
+        return static_cast<int>(block->memory);
     });
 }
 
 int rtapi_fifo_delete(int fifo_id, int /*module_id*/) {
-    return with_hal([&](Hal &hal) {
-        Guard guard(hal.impl());
-        int status = -EINVAL;
-        hal.impl().segment.each<BlockRecord>(Kind::BLOCK, [&](BlockRecord &block) {
-            if (fifo_id > 0 && block.memory == static_cast<Offset>(fifo_id) && block.users > 0) {
-                --block.users;
-                status = 0;
-            }
-        });
-        return status;
+    return with_hal([&](Instance &hal) {
+        return fifo_id > 0 && hal.memory().close_block_at(static_cast<Reference>(fifo_id)) ? 0 : -EINVAL;
     });
 }
 

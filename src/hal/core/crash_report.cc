@@ -11,7 +11,9 @@
 #include <cstring>
 #include <string_view>
 
-#include "hal/core/detail/impl.hh"
+#include "hal/core/detail/context.hh"
+#include "hal/core/detail/thread_runner.hh"
+#include "hal/core/instance.hh"
 #include "runtime/alternate_stack.hh"
 
 namespace mw::hal {
@@ -56,14 +58,14 @@ struct Text {
 };
 
 void tell_place(Text &text, const ThreadContext &here) noexcept {
-    const bool in_function = here.calling != nullptr && here.instance != nullptr;
+    const bool in_function = here.calling != nullptr && here.thread != nullptr;
     if (in_function) {
-        const Segment &segment = here.instance->impl().segment;
+        const Segment &segment = here.thread->segment;
         const auto *funct = segment.at<FunctRecord>(here.calling->funct);
         const auto *comp = funct == nullptr ? nullptr : segment.at<CompRecord>(funct->comp);
         text << "function '" << (funct == nullptr ? "?" : funct->name.data()) << "' of component '"
              << (comp == nullptr ? "?" : comp->name.data()) << "' crashed in thread '"
-             << (here.thread == nullptr ? "?" : here.thread->name.data()) << "'";
+             << here.thread->record.name.data() << "'";
     } else if (here.loading != nullptr) {
         text << "module '" << here.loading << "' crashed while it was loaded";
     } else if (here.unloading != nullptr) {
@@ -84,9 +86,9 @@ void on_crash(int number, siginfo_t *info, void * /*context*/) {
         Text text;
         tell_place(text, here);
         text << ": " << fatal->meaning << " (" << fatal->name << ")";
-        Hal *hal = current();
+        Instance *hal = current();
         if (hal != nullptr) {
-            hal->impl().note_end(text.bytes.data());
+            hal->host_status().note_end(text.bytes.data());
         }
         Text line;
         line << prepared.program.data() << ": " << text.bytes.data() << "\n";
@@ -116,14 +118,8 @@ void copy(std::array<char, SIZE> &to, std::string_view from) noexcept {
 
 }  // namespace
 
-void Hal::Impl::note_end(const char *text) noexcept {
-    EndRecord &end = segment.header().end;
-    std::uint32_t nobody = EndRecord::NONE;
-    if (end.state.compare_exchange_strong(nobody, EndRecord::BEING_WRITTEN)) {
-        std::strncpy(end.text.data(), text, end.text.size() - 1);
-        // Release: pairs with host_end; a process that sees WHOLE sees the text.
-        end.state.store(EndRecord::WHOLE, std::memory_order_release);
-    }
+void set_activity(const char *activity) noexcept {
+    context().doing = activity;
 }
 
 void report_crashes(const std::string &program, const std::vector<std::string> &leftovers) {

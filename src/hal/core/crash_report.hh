@@ -13,4 +13,8 @@ namespace mw::hal {
 /// handlers are called afterwards.
 void report_crashes(const std::string &program, const std::vector<std::string> &leftovers = {});
 
+/// Names what this thread does, for the message of a crash outside of HAL threads; null: nothing. The text
+/// must stay valid. [any thread, realtime-safe]
+void set_activity(const char *activity) noexcept;
+
 }  // namespace mw::hal

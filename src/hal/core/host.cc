@@ -5,16 +5,16 @@
 
 namespace mw::hal {
 
-LocalHost::LocalHost(std::unique_ptr<Hal> hal, std::vector<std::string> folders)
+LocalHost::LocalHost(std::unique_ptr<Instance> hal, std::vector<std::string> folders)
     : hal_(std::move(hal)), loader_(*hal_, std::move(folders)) {}
 
 LocalHost::~LocalHost() {
     (void)hal_->set_lock(LOCK_NONE);
 }
 
-Result<std::unique_ptr<LocalHost>> LocalHost::create(const HalOptions &options,
+Result<std::unique_ptr<LocalHost>> LocalHost::create(const InstanceOptions &options,
                                                      std::vector<std::string> folders) {
-    auto hal = Hal::create(options);
+    auto hal = Instance::create(options);
     if (!hal) {
         return std::unexpected(hal.error());
     }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "hal/core/loader.hh"
 
 namespace mw::hal {
@@ -19,7 +19,7 @@ class Host {
     virtual ~Host() = default;
 
     /// The instance, as seen by this process.
-    virtual Hal &hal() noexcept = 0;
+    virtual Instance &hal() noexcept = 0;
     /// loadrt: `args` are "name=value" words.
     virtual Result<> load_realtime(const std::string &name, const std::vector<std::string> &args) = 0;
     /// unloadrt of one module.
@@ -37,11 +37,11 @@ class LocalHost final : public Host {
   public:
     /// A private (or, with options.shared, shared) instance under options.scheduler, which must outlive it.
     static Result<std::unique_ptr<LocalHost>>
-    create(const HalOptions &options, std::vector<std::string> folders = Loader::default_folders());
+    create(const InstanceOptions &options, std::vector<std::string> folders = Loader::default_folders());
     /// Stops the threads and unloads everything.
     ~LocalHost() override;
 
-    Hal &hal() noexcept override { return *hal_; }
+    Instance &hal() noexcept override { return *hal_; }
     Loader &loader() noexcept { return loader_; }
     Result<> load_realtime(const std::string &name, const std::vector<std::string> &args) override;
     Result<> unload_realtime(const std::string &name) override;
@@ -50,8 +50,8 @@ class LocalHost final : public Host {
     Result<> set_log_level(runtime::LogLevel level) override;
 
   private:
-    LocalHost(std::unique_ptr<Hal> hal, std::vector<std::string> folders);
-    std::unique_ptr<Hal> hal_;
+    LocalHost(std::unique_ptr<Instance> hal, std::vector<std::string> folders);
+    std::unique_ptr<Instance> hal_;
     Loader loader_;
 };
 

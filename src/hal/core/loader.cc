@@ -21,7 +21,9 @@
 #include "base/own_place.hh"
 #include "base/text.hh"
 #include "hal/core/command_hints.hh"
-#include "hal/core/detail/impl.hh"
+#include "hal/core/detail/context.hh"
+#include "hal/core/detail/names.hh"
+#include "hal/core/instance.hh"
 #include "hal/include/rtapi.h"
 
 namespace mw::hal {
@@ -171,13 +173,13 @@ std::string missing_symbol(const std::string &message) {
 
 }  // namespace
 
-Loader::Loader(Hal &hal, std::vector<std::string> folders) : hal_(hal), folders_(std::move(folders)) {
-    hal_.impl().loader = this;
+Loader::Loader(Instance &hal, std::vector<std::string> folders) : hal_(hal), folders_(std::move(folders)) {
+    hal_.set_loader(this);
 }
 
 Loader::~Loader() {
     (void)unload_all();
-    hal_.impl().loader = nullptr;
+    hal_.set_loader(nullptr);
 }
 
 std::vector<std::string> Loader::default_folders() {
@@ -198,6 +200,18 @@ std::vector<std::string> Loader::default_folders() {
     folders.push_back(here + "/../lib/linuxcnc/modules");
     folders.push_back(here + "/../lib/linuxcnc");
     return folders;
+}
+
+bool Loader::isLoading() noexcept {
+    return context().loading != nullptr;
+}
+
+void Loader::add_parameter(const rtapi_mp_info *info) {
+    // For programs and libraries that include the macros without being loaded as modules there is no
+    // receiver.
+    if (auto *parameters = context().parameters) {
+        parameters->push_back(info);
+    }
 }
 
 std::string Loader::find_file(const std::string &name) const {
@@ -316,17 +330,14 @@ Result<> Loader::run_main(Module &module) {
         return refuse(ENOEXEC,
                       fmt::format("{} is no realtime module: it has no rtapi_app_main", module.file));
     }
-    const int first_id = [&] {
-        Guard guard(hal_.impl());
-        return hal_.impl().segment.header().next_comp_id;
-    }();
+    const int first_id = hal_.components().next_id();
     LogTap tap(hal_.log());
     const UseInstance use(&hal_);
     context().loading = module.name.c_str();
     const int status = main();
     context().loading = nullptr;
     hal_.log().drain();
-    for (const CompInfo &comp : hal_.components()) {
+    for (const CompInfo &comp : hal_.components().list()) {
         if (comp.id >= first_id && comp.type != CompType::USER && comp.pid == ::getpid()) {
             module.comp_ids.push_back(comp.id);
         }
@@ -378,9 +389,9 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
         text += (text.empty() ? "" : " ") + quoted(arg);
     }
     for (const int id : module->comp_ids) {
-        const auto comp = hal_.component(id);
+        const auto comp = hal_.components().find(id);
         if (comp && comp->type == CompType::REALTIME) {
-            (void)hal_.set_insmod_args(id, text);
+            (void)hal_.components().set_insmod_args(id, text);
         }
     }
     modules_.push_back(std::move(module));
@@ -390,11 +401,11 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
 /// Removes the module's remains, then the module.
 void Loader::close(Module &module) {
     for (const int id : module.comp_ids) {
-        const auto comp = hal_.component(id);
+        const auto comp = hal_.components().find(id);
         if (comp && comp->type == CompType::OTHER && comp->name.starts_with("__")) {
-            (void)hal_.delete_thread(std::string_view(comp->name).substr(2));
+            (void)hal_.threads().remove(std::string_view(comp->name).substr(2));
         } else if (comp) {
-            (void)hal_.delete_component(id);
+            (void)hal_.components().remove(id);
         }
     }
     if (module.handle != nullptr) {
@@ -415,7 +426,7 @@ Result<> Loader::unload(const std::string &name) {
         }
     }
     for (const int user : (*found)->users) {
-        if (const auto comp = hal_.component(user)) {
+        if (const auto comp = hal_.components().find(user)) {
             return refuse(EBUSY, fmt::format("module '{}' is used by component '{}'", name, comp->name));
         }
     }
@@ -434,7 +445,7 @@ Result<> Loader::unload(const std::string &name) {
 
 Result<> Loader::unload_all() {
     Result<> first_failure;
-    (void)hal_.stop_threads();
+    (void)hal_.threads().stop();
     // Users follow the modules that they use, unless modules were unloaded and loaded again; so several
     // rounds are needed.
     for (std::size_t rounds = modules_.size(); rounds > 0 && !modules_.empty(); --rounds) {

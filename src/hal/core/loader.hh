@@ -8,14 +8,17 @@
 #include <vector>
 
 #include "base/result.hh"
-#include "hal/core/hal.hh"
+
+struct rtapi_mp_info;
 
 namespace mw::hal {
+
+class Instance;
 
 class Loader {
   public:
     /// Searches NAME.so in `folders`; the first match is used.
-    Loader(Hal &hal, std::vector<std::string> folders);
+    Loader(Instance &hal, std::vector<std::string> folders);
     /// Unloads all, newest first.
     ~Loader();
     Loader(const Loader &) = delete;
@@ -24,6 +27,11 @@ class Loader {
     /// $MILLWRIGHT_MODULE_PATH (colon separated), then the folder of modules beside this program (../lib in a
     /// build folder, ../lib/millwright/modules installed).
     static std::vector<std::string> default_folders();
+
+    /// True while this thread runs the rtapi_app_main of a module. [any thread]
+    static bool isLoading() noexcept;
+    /// Declares a parameter of the module that this thread loads. [any thread]
+    static void add_parameter(const rtapi_mp_info *info);
 
     /// Loads a module and runs its rtapi_app_main with `args` ("count=2", "names=a,b"). Every instance and
     /// every load has its own module statics. A failure leaves nothing behind; its message includes the
@@ -52,7 +60,7 @@ class Loader {
     void close(Module &module);
     std::string find_file(const std::string &name) const;
 
-    Hal &hal_;
+    Instance &hal_;
     std::vector<std::string> folders_;
     std::vector<std::unique_ptr<Module>> modules_;
 };

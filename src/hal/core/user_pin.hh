@@ -6,7 +6,7 @@
 #include <string>
 #include <type_traits>
 
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::hal {
 
@@ -15,11 +15,11 @@ template <class T>
 class UserPin {
   public:
     /// Creates the pin; `status` keeps the first failure of several calls.
-    void make(Hal &hal, int comp_id, const std::string &name, Dir dir, Result<> &status) {
+    void make(Instance &hal, int comp_id, const std::string &name, Dir dir, Result<> &status) {
         if (!status.has_value()) {
             return;
         }
-        const auto slot = hal.new_pin(name, type(), dir, comp_id);
+        const auto slot = hal.pins().create(name, type(), dir, comp_id);
         if (slot.has_value()) {
             slot_ = *slot;
         } else {

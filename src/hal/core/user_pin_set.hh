@@ -25,7 +25,7 @@ template <const auto &TABLE>
 class UserPinSet {
   public:
     /// Creates the pins; `status` keeps the first failure of several calls.
-    void make(Hal &hal, int comp_id, int number, Result<> &status) {
+    void make(Instance &hal, int comp_id, int number, Result<> &status) {
         each(pins_, [&](const auto &row, auto &pin) {
             pin.make(hal, comp_id, pin_name(TABLE.scope, row.name, number), static_cast<Dir>(row.DIRECTION),
                      status);

@@ -174,4 +174,33 @@ Result<Value> parse_value(Type type, std::string_view text) {
     return fail("unknown HAL type");
 }
 
+Value load_value(Type type, const void *address) noexcept {
+    switch (type) {
+    case Type::BIT:
+        return Value{type, __atomic_load_n(static_cast<const std::uint8_t *>(address), __ATOMIC_RELAXED)};
+    case Type::S32:
+    case Type::U32:
+    case Type::PORT:
+        return Value{type, __atomic_load_n(static_cast<const std::uint32_t *>(address), __ATOMIC_RELAXED)};
+    default:
+        return Value{type, __atomic_load_n(static_cast<const std::uint64_t *>(address), __ATOMIC_RELAXED)};
+    }
+}
+
+void store_value(void *address, const Value &value) noexcept {
+    switch (value.type) {
+    case Type::BIT:
+        __atomic_store_n(static_cast<std::uint8_t *>(address), static_cast<std::uint8_t>(value.bits),
+                         __ATOMIC_RELAXED);
+        break;
+    case Type::S32:
+    case Type::U32:
+    case Type::PORT:
+        __atomic_store_n(static_cast<std::uint32_t *>(address), static_cast<std::uint32_t>(value.bits),
+                         __ATOMIC_RELAXED);
+        break;
+    default: __atomic_store_n(static_cast<std::uint64_t *>(address), value.bits, __ATOMIC_RELAXED);
+    }
+}
+
 }  // namespace mw::hal

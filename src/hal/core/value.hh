@@ -2,6 +2,7 @@
 // HAL values: seven distinct types, read from and written as text.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,6 +10,9 @@
 #include "base/result.hh"
 
 namespace mw::hal {
+
+/// Most characters of a name.
+inline constexpr std::size_t NAME_LENGTH = 127;
 
 /// Numbers as in hal.h (hal_type_t).
 enum class Type : std::uint8_t { BIT = 1, FLOAT = 2, S32 = 3, U32 = 4, PORT = 5, S64 = 6, U64 = 7 };
@@ -48,6 +52,11 @@ struct Value {
     std::string str() const;
     bool operator==(const Value &) const noexcept = default;
 };
+
+/// The value at an address in memory of HAL. [any thread, realtime-safe]
+Value load_value(Type type, const void *address) noexcept;
+/// [any thread, realtime-safe]
+void store_value(void *address, const Value &value) noexcept;
 
 /// Parses "true", "TRUE", "1", "12", "-3", "0x1F", ".15", "4.2e1" as a value of `type`; an error names the
 /// expected form and range.

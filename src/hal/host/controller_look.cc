@@ -16,17 +16,13 @@ void ControllerLook::take_priority_of(std::int32_t pid) {
     }
 }
 
-void ControllerLook::step(Hal::Impl &hal, std::int32_t pid) {
+void ControllerLook::step(Instance &hal, std::int32_t pid) {
     take_priority_of(pid);
-    bool hung = pid > 0 && !hal.controller_watches.empty();
-    for (const auto &watch : hal.controller_watches) {
-        if (watch.looks != nullptr) {
-            __atomic_fetch_add(watch.looks, 1U, __ATOMIC_RELAXED);
-        }
-        hung = hung && __atomic_load_n(watch.is_safe, __ATOMIC_ACQUIRE) != 0;
-    }
+    ControllerWatches &watches = hal.controller_watches();
+    watches.count_check();
+    const bool hung = pid > 0 && !watches.isEmpty() && watches.isSafe();
     if (hung && !hung_) {
-        hal.rest_process(pid);
+        hal.processes().set_safe_outputs(pid);
     }
     hung_ = hung;
 }

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "hal/core/detail/impl.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::hal {
 
@@ -13,7 +13,7 @@ class ControllerLook {
   public:
     /// Counts a check for modules that use it (mw_ext_count_looks). When the process `pid` hangs and its
     /// machine is off, switches off coolant and its other outputs. 0: there is none.
-    void step(Hal::Impl &hal, std::int32_t pid);
+    void step(Instance &hal, std::int32_t pid);
 
   private:
     /// Uses the priority of the controlling process, so that both are delayed by the same load.

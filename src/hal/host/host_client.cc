@@ -107,7 +107,7 @@ struct HostClient::Impl {
     int fd = -1;
     int pid = 0;
     int process = -1;  ///< pidfd of the process
-    std::unique_ptr<Hal> hal;
+    std::unique_ptr<Instance> hal;
 
     ~Impl() {
         for (const int one : {fd, process}) {
@@ -142,7 +142,7 @@ Result<std::unique_ptr<HostClient>> HostClient::connect(const std::string &insta
     }
     client->impl_->pid = std::atoi(hello->front().c_str());
     client->impl_->process = static_cast<int>(::syscall(SYS_pidfd_open, client->impl_->pid, 0));
-    auto hal = Hal::attach(instance);
+    auto hal = Instance::attach(instance);
     if (!hal) {
         return std::unexpected(hal.error());
     }
@@ -204,7 +204,7 @@ Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instanc
     return connect(instance);
 }
 
-Hal &HostClient::hal() noexcept {
+Instance &HostClient::hal() noexcept {
     return *impl_->hal;
 }
 
@@ -287,7 +287,7 @@ Result<> HostClient::shut_down() {
 
 std::optional<Error> HostClient::death() const {
     const bool ended = impl_->hasEnded(0);
-    const auto how = impl_->hal->host_end();
+    const auto how = impl_->hal->host_status().end_reason();
     if (!ended && !how) {
         return std::nullopt;
     }

@@ -32,7 +32,7 @@ class HostClient final : public Host {
                                                      Lifetime lifetime = Lifetime::OWN);
     ~HostClient() override;
 
-    Hal &hal() noexcept override;
+    Instance &hal() noexcept override;
     Result<> load_realtime(const std::string &name, const std::vector<std::string> &args) override;
     Result<> unload_realtime(const std::string &name) override;
     Result<bool> isModuleLoaded(const std::string &name) override;

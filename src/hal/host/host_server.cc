@@ -21,7 +21,6 @@
 #include <fmt/format.h>
 
 #include "hal/core/crash_report.hh"
-#include "hal/core/detail/impl.hh"
 #include "hal/core/host.hh"
 #include "hal/host/controller_look.hh"
 #include "hal/host/message.hh"
@@ -148,7 +147,7 @@ Result<> HostServer::Impl::open(const HostServerOptions &options) {
     signals = ::signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK);
     log = std::make_unique<runtime::Log>(runtime::Log::Mode::DRAINED, options.sink, options.sink_context);
     scheduler = std::make_unique<runtime::RealtimeScheduler>(*log, options.realtime);
-    HalOptions hal_options;
+    InstanceOptions hal_options;
     hal_options.name = instance;
     hal_options.isShared = true;
     hal_options.scheduler = scheduler.get();
@@ -158,14 +157,14 @@ Result<> HostServer::Impl::open(const HostServerOptions &options) {
         return std::unexpected(made.error());
     }
     host = std::move(*made);
-    host->hal().impl().spare_process(pid_of(controller));
-    host->hal().set_realtime_missing(scheduler->missing());
+    host->hal().processes().spare(pid_of(controller));
+    host->hal().host_status().set_realtime_missing(scheduler->missing());
     set_process_instance(&host->hal());
     auto listening = listen();
     if (listening) {
         const auto lock_file = lock_path(instance);
-        report_crashes("millwright-rt", {path, "/dev/shm/" + detail::segment_name(instance),
-                                         lock_file ? *lock_file : std::string()});
+        report_crashes("millwright-rt",
+                       {path, "/dev/shm/" + segment_name(instance), lock_file ? *lock_file : std::string()});
     }
     return listening;
 }
@@ -224,8 +223,8 @@ void HostServer::Impl::end_for(const std::string &reason) {
         ending = true;
         return;
     }
-    host->hal().impl().note_end(reason.c_str());
-    if (host->hal().impl().controller_watches.empty()) {
+    host->hal().host_status().note_end(reason.c_str());
+    if (host->hal().controller_watches().isEmpty()) {
         ending = true;
     } else {
         on_controller_gone();
@@ -243,7 +242,7 @@ Message HostServer::Impl::take_control(const Client &client) {
         return {"error", std::string("cannot watch the controlling process: ") + std::strerror(errno), ""};
     }
     controller_socket = client.fd;
-    host->hal().impl().spare_process(peer.pid);
+    host->hal().processes().spare(peer.pid);
     return {"ok"};
 }
 
@@ -290,25 +289,12 @@ void HostServer::Impl::on_controller_gone() {
     controller = -1;
     controller_socket = -1;
     gone_ns = gone_ns == 0 ? host->now_ns() : gone_ns;
-    for (const auto &watch : host->hal().impl().controller_watches) {
-        __atomic_store_n(watch.is_gone, 1U, __ATOMIC_RELEASE);
-    }
+    host->hal().controller_watches().report_gone();
 }
 
 /// Opens a pidfd for every process with components, and closes others.
 void HostServer::Impl::look_for_programs() {
-    std::vector<runtime::ProcessId> wanted;
-    const runtime::ProcessId self = runtime::this_process();
-    {
-        detail::Guard guard(host->hal().impl());
-        host->hal().impl().segment.each<detail::CompRecord>(
-            detail::Kind::COMP, [&](const detail::CompRecord &comp) {
-                if (comp.process != self &&
-                    std::find(wanted.begin(), wanted.end(), comp.process) == wanted.end()) {
-                    wanted.push_back(comp.process);
-                }
-            });
-    }
+    const std::vector<runtime::ProcessId> wanted = host->hal().processes().others();
     std::erase_if(programs, [&](const Program &program) {
         const bool gone = std::find(wanted.begin(), wanted.end(), program.process) == wanted.end();
         if (gone) {
@@ -325,17 +311,17 @@ void HostServer::Impl::look_for_programs() {
         }
     }
     reap();
-    host->hal().publish_thread_figures();
+    host->hal().threads().publish_figures();
     looked_ns = host->now_ns();
 }
 
 /// Removes components of ended processes, and reports them.
 void HostServer::Impl::reap() {
-    const auto known = host->hal().deaths();
-    if (host->hal().reap_dead_components().empty()) {
+    const auto known = host->hal().processes().deaths();
+    if (host->hal().processes().reap_dead().empty()) {
         return;
     }
-    for (const DeathInfo &death : host->hal().deaths()) {
+    for (const DeathInfo &death : host->hal().processes().deaths()) {
         const bool is_new = std::none_of(known.begin(), known.end(), [&](const DeathInfo &earlier) {
             return earlier.name == death.name && earlier.time_ns == death.time_ns;
         });
@@ -358,17 +344,15 @@ void HostServer::Impl::dismiss_programs() const {
 
 /// True when every watching module reports that the machine is stopped and off.
 bool HostServer::Impl::isSafeToEnd() {
-    const bool safe = std::ranges::all_of(host->hal().impl().controller_watches, [](const auto &watch) {
-        return __atomic_load_n(watch.is_safe, __ATOMIC_ACQUIRE) != 0;
-    });
-    return safe || !host->hal().isRunning() || host->now_ns() > gone_ns + LONGEST_BRAKING_NS;
+    return host->hal().controller_watches().isSafe() || !host->hal().threads().isRunning() ||
+           host->now_ns() > gone_ns + LONGEST_BRAKING_NS;
 }
 
 /// Outputs of dead processes take their safe values, and the threads run long enough to pass them to the
 /// hardware. Only after the machine has stopped: an enable chain through the dead process would interrupt the
 /// braking.
 void HostServer::Impl::take_safe_values() {
-    host->hal().impl().spare_process(0);
+    host->hal().processes().spare(0);
     reap();
     const timespec some_periods{0, 20'000'000};
     ::nanosleep(&some_periods, nullptr);
@@ -474,7 +458,7 @@ bool HostServer::Impl::isControllerGone() {
 void HostServer::run() {
     Impl &here = *impl_;
     while (!here.ending) {
-        here.controller_look.step(here.host->hal().impl(), here.gone_ns == 0 ? pid_of(here.controller) : 0);
+        here.controller_look.step(here.host->hal(), here.gone_ns == 0 ? pid_of(here.controller) : 0);
         std::vector<pollfd> fds = here.watched();
         const bool braking = here.gone_ns != 0;
         const int ready = ::poll(fds.data(), fds.size(), braking ? ENDING_MS : LOOK_MS);

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "hal/core/detail/impl.hh"
+#include "hal/core/instance.hh"
 #include "runtime/process.hh"
 #include "runtime/shared_memory.hh"
 
@@ -194,7 +194,7 @@ void remove_leftovers(const std::string &instance) {
     if (const auto socket = socket_path(instance)) {
         ::unlink(socket->c_str());
     }
-    runtime::SharedMemory::remove_stale(detail::segment_name(instance));
+    runtime::SharedMemory::remove_stale(segment_name(instance));
     drop_lock(instance, *lock);
 }
 

@@ -189,8 +189,8 @@ std::string suggestion(std::string_view name, const std::vector<std::string> &ca
     return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
 }
 
-std::string missing_hint(Hal &hal, std::string_view name, const std::vector<std::string> &candidates) {
-    for (const DeathInfo &death : hal.deaths()) {
+std::string missing_hint(Instance &hal, std::string_view name, const std::vector<std::string> &candidates) {
+    for (const DeathInfo &death : hal.processes().deaths()) {
         if (name == death.name || name.starts_with(death.name + ".")) {
             return fmt::format("component '{}' died with its process {}", death.name, death.pid);
         }
@@ -198,25 +198,25 @@ std::string missing_hint(Hal &hal, std::string_view name, const std::vector<std:
     return suggestion(name, candidates);
 }
 
-std::vector<std::string> pin_names(Hal &hal) {
+std::vector<std::string> pin_names(Instance &hal) {
     std::vector<std::string> names;
-    for (const PinInfo &pin : hal.pins()) {
+    for (const PinInfo &pin : hal.pins().list()) {
         names.push_back(pin.name);
     }
     return names;
 }
 
-std::vector<std::string> param_names(Hal &hal) {
+std::vector<std::string> param_names(Instance &hal) {
     std::vector<std::string> names;
-    for (const ParamInfo &param : hal.params()) {
+    for (const ParamInfo &param : hal.params().list()) {
         names.push_back(param.name);
     }
     return names;
 }
 
-std::vector<std::string> signal_names(Hal &hal) {
+std::vector<std::string> signal_names(Instance &hal) {
     std::vector<std::string> names;
-    for (const SignalInfo &signal : hal.signals()) {
+    for (const SignalInfo &signal : hal.signals().list()) {
         names.push_back(signal.name);
     }
     return names;

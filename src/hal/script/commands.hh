@@ -55,12 +55,12 @@ Result<> at(Result<> result, const SourcePlace &place, const std::string &hint =
 std::string suggestion(std::string_view name, const std::vector<std::string> &candidates);
 
 /// Why the name does not exist: its component died, or "did you mean 'x'?", or empty.
-std::string missing_hint(Hal &hal, std::string_view name, const std::vector<std::string> &candidates);
+std::string missing_hint(Instance &hal, std::string_view name, const std::vector<std::string> &candidates);
 
 // Names of existing objects, for suggestions.
-std::vector<std::string> pin_names(Hal &hal);
-std::vector<std::string> param_names(Hal &hal);
-std::vector<std::string> signal_names(Hal &hal);
+std::vector<std::string> pin_names(Instance &hal);
+std::vector<std::string> param_names(Instance &hal);
+std::vector<std::string> signal_names(Instance &hal);
 
 // The commands. The number of words has been checked.
 Result<> run_loadrt(Session &session, const Call &call);

@@ -8,16 +8,16 @@ namespace mw::hal::script {
 
 namespace {
 
-Result<> check_pin(Hal &hal, const Word &word) {
-    if (hal.hasPin(word.text)) {
+Result<> check_pin(Instance &hal, const Word &word) {
+    if (hal.pins().has(word.text)) {
         return {};
     }
     return fail(fmt::format("pin '{}' does not exist", word.text), word.place,
                 missing_hint(hal, word.text, pin_names(hal)));
 }
 
-Result<> check_signal(Hal &hal, const Word &word) {
-    if (hal.hasSignal(word.text)) {
+Result<> check_signal(Instance &hal, const Word &word) {
+    if (hal.signals().has(word.text)) {
         return {};
     }
     return fail(fmt::format("signal '{}' does not exist", word.text), word.place,
@@ -26,13 +26,13 @@ Result<> check_signal(Hal &hal, const Word &word) {
 
 /// Links one pin to an existing signal, or a placeholder instead.
 Result<> link(Session &session, const Word &pin, const Word &signal) {
-    Hal &hal = session.hal();
+    Instance &hal = session.hal();
     if (session.options().has_placeholders && session.placeholders().covers(pin.text)) {
         return at(session.placeholders().link(pin.text, signal.text), pin.place);
     }
     Result<> result = check_signal(hal, signal);
     result = result ? check_pin(hal, pin) : result;
-    result = result ? at(hal.link(pin.text, signal.text), pin.place) : result;
+    result = result ? at(hal.signals().link(pin.text, signal.text), pin.place) : result;
     if (result) {
         session.info(pin.place, fmt::format("Pin '{}' linked to signal '{}'", pin.text, signal.text));
     }
@@ -61,20 +61,22 @@ Result<> set_alias(Session &session, const Call &call, const std::string &alias)
     if (!kind) {
         return std::unexpected(kind.error());
     }
-    Hal &hal = session.hal();
+    Instance &hal = session.hal();
     const std::string &name = call.text(1);
     if (*kind == Kind::PIN) {
-        return at(hal.alias_pin(name, alias), call.place_of(1), missing_hint(hal, name, pin_names(hal)));
+        return at(hal.pins().set_alias(name, alias), call.place_of(1),
+                  missing_hint(hal, name, pin_names(hal)));
     }
-    return at(hal.alias_param(name, alias), call.place_of(1), missing_hint(hal, name, param_names(hal)));
+    return at(hal.params().set_alias(name, alias), call.place_of(1),
+              missing_hint(hal, name, param_names(hal)));
 }
 
 }  // namespace
 
 Result<> run_net(Session &session, const Call &call) {
-    Hal &hal = session.hal();
+    Instance &hal = session.hal();
     const Word &signal = call.words[0];
-    if (hal.hasPin(signal.text) && !hal.hasSignal(signal.text)) {
+    if (hal.pins().has(signal.text) && !hal.signals().has(signal.text)) {
         return fail(fmt::format("signal name '{}' is the name of a pin", signal.text), signal.place,
                     "the signal comes first: net SIGNAL PIN...");
     }
@@ -93,7 +95,7 @@ Result<> run_net(Session &session, const Call &call) {
         pins.push_back(pin.text);
     }
     if (!pins.empty()) {
-        const Result<> linked = at(hal.net(signal.text, pins), call.place_of(1));
+        const Result<> linked = at(hal.signals().net(signal.text, pins), call.place_of(1));
         if (!linked) {
             return linked;
         }
@@ -116,25 +118,25 @@ Result<> run_net(Session &session, const Call &call) {
 
 Result<> run_linkpp(Session &session, const Call &call) {
     warn_deprecated(session, call);
-    Hal &hal = session.hal();
+    Instance &hal = session.hal();
     Result<> result = check_pin(hal, call.words[0]);
     result = result ? check_pin(hal, call.words[1]) : result;
     if (!result) {
         return result;
     }
     // The signal is named after the first pin and must be new.
-    if (hal.hasSignal(call.text(0))) {
+    if (hal.signals().has(call.text(0))) {
         return fail(fmt::format("there is a signal '{}' already", call.text(0)), call.place_of(0));
     }
-    result = at(hal.new_signal(call.text(0), hal.pin(call.text(0))->type), call.place_of(0));
+    result = at(hal.signals().create(call.text(0), hal.pins().find(call.text(0))->type), call.place_of(0));
     if (!result) {
         return result;
     }
-    result = at(hal.link(call.text(0), call.text(0)), call.place_of(0));
-    result = result ? at(hal.link(call.text(1), call.text(0)), call.place_of(1)) : result;
+    result = at(hal.signals().link(call.text(0), call.text(0)), call.place_of(0));
+    result = result ? at(hal.signals().link(call.text(1), call.text(0)), call.place_of(1)) : result;
     if (!result) {
         // Removes a partly linked signal.
-        (void)hal.delete_signal(call.text(0));
+        (void)hal.signals().remove(call.text(0));
     }
     return result;
 }
@@ -148,12 +150,12 @@ Result<> run_linksp(Session &session, const Call &call) {
 }
 
 Result<> run_unlinkp(Session &session, const Call &call) {
-    Hal &hal = session.hal();
+    Instance &hal = session.hal();
     if (session.options().has_placeholders && session.placeholders().covers(call.text(0))) {
         return {};
     }
     Result<> result = check_pin(hal, call.words[0]);
-    result = result ? at(hal.unlink(call.text(0)), call.place_of(0)) : result;
+    result = result ? at(hal.signals().unlink(call.text(0)), call.place_of(0)) : result;
     if (result) {
         session.info(call.place, fmt::format("Pin '{}' unlinked", call.text(0)));
     }
@@ -166,22 +168,22 @@ Result<> run_newsig(Session &session, const Call &call) {
         return fail(fmt::format("unknown signal type '{}'", call.text(1)), call.place_of(1),
                     "bit, float, s32, u32, s64, u64 or port");
     }
-    const Result<> made = at(session.hal().new_signal(call.text(0), *type), call.place_of(0));
+    const Result<> made = at(session.hal().signals().create(call.text(0), *type), call.place_of(0));
     return made ? at(session.placeholders().signal_made(call.text(0)), call.place_of(0)) : made;
 }
 
 Result<> run_delsig(Session &session, const Call &call) {
-    Hal &hal = session.hal();
+    Instance &hal = session.hal();
     if (call.text(0) == "all") {
         Result<> result;
         for (const std::string &name : signal_names(hal)) {
-            const Result<> deleted = hal.delete_signal(name);
+            const Result<> deleted = hal.signals().remove(name);
             result = result ? deleted : result;
         }
         return at(result, call.place_of(0));
     }
     Result<> result = check_signal(hal, call.words[0]);
-    result = result ? at(hal.delete_signal(call.text(0)), call.place_of(0)) : result;
+    result = result ? at(hal.signals().remove(call.text(0)), call.place_of(0)) : result;
     if (result) {
         session.info(call.place, fmt::format("Signal '{}' deleted", call.text(0)));
     }

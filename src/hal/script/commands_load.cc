@@ -63,8 +63,8 @@ Result<> unload_module(Session &session, const std::string &name) {
 Result<> unload_all_modules(Session &session) {
     Result<> result;
     // Threads must not call functions that are being removed.
-    if (session.hal().isRunning()) {
-        result = session.hal().stop_threads();
+    if (session.hal().threads().isRunning()) {
+        result = session.hal().threads().stop();
     }
     const Result<std::vector<std::string>> modules = session.host().modules();
     if (!modules) {
@@ -79,7 +79,7 @@ Result<> unload_all_modules(Session &session) {
 
 std::vector<std::string> component_names(Session &session, CompType type) {
     std::vector<std::string> names;
-    for (const CompInfo &component : session.hal().components()) {
+    for (const CompInfo &component : session.hal().components().list()) {
         const bool own = component.type == CompType::USER && component.pid == getpid();
         if (component.type == type && !own) {
             names.push_back(component.name);
@@ -115,7 +115,7 @@ Result<int> parse_position(const Call &call) {
 
 Result<> check_function_and_thread(Session &session, const Call &call) {
     std::vector<std::string> functions;
-    for (const FunctInfo &function : session.hal().functs()) {
+    for (const FunctionInfo &function : session.hal().functions().list()) {
         functions.push_back(function.name);
     }
     if (std::find(functions.begin(), functions.end(), call.text(0)) == functions.end()) {
@@ -123,7 +123,7 @@ Result<> check_function_and_thread(Session &session, const Call &call) {
                     suggestion(call.text(0), functions));
     }
     std::vector<std::string> threads;
-    for (const ThreadInfo &thread : session.hal().threads()) {
+    for (const ThreadInfo &thread : session.hal().threads().list()) {
         threads.push_back(thread.name);
     }
     if (std::find(threads.begin(), threads.end(), call.text(1)) == threads.end()) {
@@ -171,11 +171,11 @@ Result<> run_loadusr(Session &session, const Call &call) {
 }
 
 Result<> run_waitusr(Session &session, const Call &call) {
-    if (!session.hal().hasComponent(call.text(0))) {
+    if (!session.hal().components().has(call.text(0))) {
         return warn_not_loaded(session, call.words[0]);
     }
     const Result<> ended = at(session.programs().wait_for_end(call.text(0)), call.place_of(0));
-    for (const DeathInfo &death : session.hal().deaths()) {
+    for (const DeathInfo &death : session.hal().processes().deaths()) {
         if (ended && death.name == call.text(0)) {
             session.warn(
                 call.place_of(0),
@@ -191,7 +191,7 @@ Result<> run_unloadusr(Session &session, const Call &call) {
     if (call.text(0) == "all") {
         return at(session.programs().stop_all(), call.place_of(0));
     }
-    const Result<CompInfo> component = session.hal().component(call.text(0));
+    const Result<CompInfo> component = session.hal().components().find(call.text(0));
     if (!component) {
         return warn_not_loaded(session, call.words[0]);
     }
@@ -223,7 +223,7 @@ Result<> run_unload(Session &session, const Call &call) {
         const Result<> modules = at(unload_all_modules(session), call.place_of(0));
         return programs ? modules : programs;
     }
-    const Result<CompInfo> component = session.hal().component(call.text(0));
+    const Result<CompInfo> component = session.hal().components().find(call.text(0));
     const bool is_program = component && component->type == CompType::USER;
     return is_program ? run_unloadusr(session, call) : run_unloadrt(session, call);
 }
@@ -234,7 +234,8 @@ Result<> run_addf(Session &session, const Call &call) {
         return std::unexpected(position.error());
     }
     Result<> result = check_function_and_thread(session, call);
-    result = result ? at(session.hal().add_function(call.text(0), call.text(1), *position), call.place_of(0))
+    result = result ? at(session.hal().threads().add_function(call.text(0), call.text(1), *position),
+                         call.place_of(0))
                     : result;
     if (result) {
         session.info(call.place,
@@ -249,9 +250,9 @@ Result<> run_initf(Session &session, const Call &call) {
         return std::unexpected(position.error());
     }
     Result<> result = check_function_and_thread(session, call);
-    result =
-        result ? at(session.hal().add_init_function(call.text(0), call.text(1), *position), call.place_of(0))
-               : result;
+    result = result ? at(session.hal().threads().add_init_function(call.text(0), call.text(1), *position),
+                         call.place_of(0))
+                    : result;
     if (result) {
         session.info(call.place,
                      fmt::format("Function '{}' added once to thread '{}'", call.text(0), call.text(1)));
@@ -261,8 +262,9 @@ Result<> run_initf(Session &session, const Call &call) {
 
 Result<> run_delf(Session &session, const Call &call) {
     Result<> result = check_function_and_thread(session, call);
-    result =
-        result ? at(session.hal().remove_function(call.text(0), call.text(1)), call.place_of(0)) : result;
+    result = result
+                 ? at(session.hal().threads().remove_function(call.text(0), call.text(1)), call.place_of(0))
+                 : result;
     if (result) {
         session.info(call.place,
                      fmt::format("Function '{}' removed from thread '{}'", call.text(0), call.text(1)));
@@ -271,7 +273,7 @@ Result<> run_delf(Session &session, const Call &call) {
 }
 
 Result<> run_start(Session &session, const Call &call) {
-    const Result<> result = at(session.hal().start_threads(), call.place);
+    const Result<> result = at(session.hal().threads().start(), call.place);
     if (result) {
         session.info(call.place, "Realtime threads started");
     }
@@ -279,7 +281,7 @@ Result<> run_start(Session &session, const Call &call) {
 }
 
 Result<> run_stop(Session &session, const Call &call) {
-    const Result<> result = at(session.hal().stop_threads(), call.place);
+    const Result<> result = at(session.hal().threads().stop(), call.place);
     if (result) {
         session.info(call.place, "Realtime threads stopped");
     }

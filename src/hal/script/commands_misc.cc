@@ -42,7 +42,7 @@ std::string lock_status(std::uint8_t lock) {
     return text;
 }
 
-std::string memory_status(const HalStatistics &s) {
+std::string memory_status(const MemoryStatistics &s) {
     std::string text = "HAL memory status\n";
     text += fmt::format("  used/total shared memory:   {}/{}\n", s.segment_bytes, s.capacity_bytes);
     const auto line = [&](const char *title, const RecordCount &count) {
@@ -59,9 +59,9 @@ std::string memory_status(const HalStatistics &s) {
 }
 
 /// Components whose process died: empty when there are none.
-std::string death_status(Hal &hal) {
+std::string death_status(Instance &hal) {
     std::string text;
-    for (const DeathInfo &death : hal.deaths()) {
+    for (const DeathInfo &death : hal.processes().deaths()) {
         text += text.empty() ? "HAL components that died:\n" : "";
         text += fmt::format("  {} (process {}, {} s ago)\n", death.name, death.pid,
                             (hal.now_ns() - death.time_ns) / 1'000'000'000);
@@ -121,7 +121,7 @@ Result<> run_status(Session &session, const Call &call) {
         text += lock_status(session.hal().lock());
     }
     if (all || what == "mem") {
-        text += memory_status(session.hal().statistics());
+        text += memory_status(session.hal().memory().statistics());
     }
     session.output().data(all ? text + death_status(session.hal()) : text);
     return {};

@@ -22,9 +22,9 @@ std::string saved(const Value &value) {
     }
 }
 
-std::string save_comp(Hal &hal) {
+std::string save_comp(Instance &hal) {
     std::string text = "# components\n";
-    std::vector<CompInfo> components = hal.components();
+    std::vector<CompInfo> components = hal.components().list();
     std::sort(components.begin(), components.end(),
               [](const CompInfo &a, const CompInfo &b) { return a.id < b.id; });
     for (const CompInfo &c : components) {
@@ -40,15 +40,15 @@ std::string save_comp(Hal &hal) {
     return text;
 }
 
-std::string save_alias(Hal &hal) {
+std::string save_alias(Instance &hal) {
     std::string text = "# pin aliases\n";
-    for (const PinInfo &p : hal.pins()) {
+    for (const PinInfo &p : hal.pins().list()) {
         if (!p.original_name.empty()) {
             text += fmt::format("alias pin {} {}\n", p.original_name, p.name);
         }
     }
     text += "# param aliases\n";
-    for (const ParamInfo &p : hal.params()) {
+    for (const ParamInfo &p : hal.params().list()) {
         if (!p.original_name.empty()) {
             text += fmt::format("alias param {} {}\n", p.original_name, p.name);
         }
@@ -56,9 +56,9 @@ std::string save_alias(Hal &hal) {
     return text;
 }
 
-std::string save_signals(Hal &hal, bool onlyUnlinked) {
+std::string save_signals(Instance &hal, bool onlyUnlinked) {
     std::string text = "# signals\n";
-    for (const SignalInfo &s : hal.signals()) {
+    for (const SignalInfo &s : hal.signals().list()) {
         if (!onlyUnlinked || s.pins.empty()) {
             text += fmt::format("newsig {} {:<5}\n", s.name, type_name(s.type));
         }
@@ -66,17 +66,17 @@ std::string save_signals(Hal &hal, bool onlyUnlinked) {
     return text;
 }
 
-std::string save_sig(Hal &hal) {
+std::string save_sig(Instance &hal) {
     return save_signals(hal, false);
 }
 
-std::string save_sigu(Hal &hal) {
+std::string save_sigu(Instance &hal) {
     return save_signals(hal, true);
 }
 
-std::string links(Hal &hal, Arrows arrows) {
+std::string links(Instance &hal, Arrows arrows) {
     std::string text = "# links\n";
-    for (const PinInfo &p : hal.pins()) {
+    for (const PinInfo &p : hal.pins().list()) {
         if (p.signal.empty()) {
             continue;
         }
@@ -86,11 +86,11 @@ std::string links(Hal &hal, Arrows arrows) {
     return text;
 }
 
-std::string save_link(Hal &hal) {
+std::string save_link(Instance &hal) {
     return links(hal, Arrows::NO);
 }
 
-std::string save_linka(Hal &hal) {
+std::string save_linka(Instance &hal) {
     return links(hal, Arrows::YES);
 }
 
@@ -105,9 +105,9 @@ std::vector<SignalPin> ordered(const SignalInfo &signal) {
     return pins;
 }
 
-std::string single_nets(Hal &hal, Arrows arrows) {
+std::string single_nets(Instance &hal, Arrows arrows) {
     std::string text = "# nets\n";
-    for (const SignalInfo &s : hal.signals()) {
+    for (const SignalInfo &s : hal.signals().list()) {
         text += fmt::format("newsig {} {:<5}\n", s.name, type_name(s.type));
         for (const SignalPin &pin : s.pins) {
             const char *arrow = pin.dir == Dir::IN ? "==>" : (pin.dir == Dir::OUT ? "<==" : "<=>");
@@ -117,17 +117,17 @@ std::string single_nets(Hal &hal, Arrows arrows) {
     return text;
 }
 
-std::string save_net(Hal &hal) {
+std::string save_net(Instance &hal) {
     return single_nets(hal, Arrows::NO);
 }
 
-std::string save_neta(Hal &hal) {
+std::string save_neta(Instance &hal) {
     return single_nets(hal, Arrows::YES);
 }
 
-std::string net_lines(Hal &hal, Arrows arrows) {
+std::string net_lines(Instance &hal, Arrows arrows) {
     std::string text = "# nets\n";
-    for (const SignalInfo &s : hal.signals()) {
+    for (const SignalInfo &s : hal.signals().list()) {
         if (s.pins.empty()) {
             continue;
         }
@@ -147,17 +147,17 @@ std::string net_lines(Hal &hal, Arrows arrows) {
     return text;
 }
 
-std::string save_netl(Hal &hal) {
+std::string save_netl(Instance &hal) {
     return net_lines(hal, Arrows::NO);
 }
 
-std::string save_netla(Hal &hal) {
+std::string save_netla(Instance &hal) {
     return net_lines(hal, Arrows::YES);
 }
 
-std::string save_param(Hal &hal) {
+std::string save_param(Instance &hal) {
     std::string text = "# parameter values\n";
-    for (const ParamInfo &p : hal.params()) {
+    for (const ParamInfo &p : hal.params().list()) {
         if (p.dir == Dir::RW) {
             text += fmt::format("setp {} {:>20}\n", p.name, saved(p.value));
         }
@@ -165,9 +165,9 @@ std::string save_param(Hal &hal) {
     return text;
 }
 
-std::string save_thread(Hal &hal) {
+std::string save_thread(Instance &hal) {
     std::string text = "# realtime thread/function links\n";
-    std::vector<ThreadInfo> threads = hal.threads();
+    std::vector<ThreadInfo> threads = hal.threads().list();
     std::reverse(threads.begin(), threads.end());
     for (const ThreadInfo &t : threads) {
         for (const std::string &function : t.init_functions) {
@@ -180,9 +180,9 @@ std::string save_thread(Hal &hal) {
     return text;
 }
 
-std::string save_unconnected(Hal &hal) {
+std::string save_unconnected(Instance &hal) {
     std::string text = "# unconnected pin values\n";
-    for (const PinInfo &p : hal.pins()) {
+    for (const PinInfo &p : hal.pins().list()) {
         if (p.dir == Dir::IN && p.signal.empty()) {
             text += fmt::format("setp {} {:>20}\n", p.name, saved(p.value));
         }
@@ -190,19 +190,19 @@ std::string save_unconnected(Hal &hal) {
     return text;
 }
 
-std::string save_all(Hal &hal) {
+std::string save_all(Instance &hal) {
     return save_comp(hal) + save_alias(hal) + save_sigu(hal) + save_netla(hal) + save_param(hal) +
            save_thread(hal);
 }
 
-std::string save_allu(Hal &hal) {
+std::string save_allu(Instance &hal) {
     return save_comp(hal) + save_alias(hal) + save_sigu(hal) + save_netla(hal) + save_param(hal) +
            save_unconnected(hal) + save_thread(hal);
 }
 
 struct SaveKind {
     std::string_view name;
-    std::string (*text)(Hal &hal);
+    std::string (*text)(Instance &hal);
 };
 
 constexpr SaveKind SAVE_KINDS[] = {

@@ -50,27 +50,27 @@ std::vector<Item> matching(const Patterns &patterns, std::vector<Item> items) {
     return items;
 }
 
-std::vector<PinInfo> pins(Hal &hal, const Patterns &patterns) {
-    return matching(patterns, hal.pins());
+std::vector<PinInfo> pins(Instance &hal, const Patterns &patterns) {
+    return matching(patterns, hal.pins().list());
 }
-std::vector<ParamInfo> params(Hal &hal, const Patterns &patterns) {
-    return matching(patterns, hal.params());
+std::vector<ParamInfo> params(Instance &hal, const Patterns &patterns) {
+    return matching(patterns, hal.params().list());
 }
-std::vector<SignalInfo> signals(Hal &hal, const Patterns &patterns) {
-    return matching(patterns, hal.signals());
+std::vector<SignalInfo> signals(Instance &hal, const Patterns &patterns) {
+    return matching(patterns, hal.signals().list());
 }
-std::vector<FunctInfo> functs(Hal &hal, const Patterns &patterns) {
-    return matching(patterns, hal.functs());
+std::vector<FunctionInfo> functs(Instance &hal, const Patterns &patterns) {
+    return matching(patterns, hal.functions().list());
 }
 /// Slowest first.
-std::vector<ThreadInfo> threads(Hal &hal, const Patterns &patterns) {
-    auto items = matching(patterns, hal.threads());
+std::vector<ThreadInfo> threads(Instance &hal, const Patterns &patterns) {
+    auto items = matching(patterns, hal.threads().list());
     std::reverse(items.begin(), items.end());
     return items;
 }
 /// Newest first.
-std::vector<CompInfo> components(Hal &hal, const Patterns &patterns) {
-    auto items = matching(patterns, hal.components());
+std::vector<CompInfo> components(Instance &hal, const Patterns &patterns) {
+    auto items = matching(patterns, hal.components().list());
     std::sort(items.begin(), items.end(), [](const CompInfo &a, const CompInfo &b) { return a.id > b.id; });
     return items;
 }
@@ -172,7 +172,7 @@ std::string show_funct(Session &session, const Patterns &patterns) {
         text += "Exported Functions:\n";
         text += "Owner   CodeAddr  Arg       FP   Users  Name\n";
     }
-    for (const FunctInfo &f : functs(session.hal(), patterns)) {
+    for (const FunctionInfo &f : functs(session.hal(), patterns)) {
         const char *fp = f.usesFloat ? "YES" : "NO";
         if (is_script) {
             text += fmt::format("{} {:012x} {:012x} {:<3} {:>2} {}\n", f.owner, f.address, f.argument, fp,
@@ -270,7 +270,7 @@ std::string names_of(const std::vector<Item> &items) {
 }
 
 /// The names that list prints; nothing for an unknown type.
-std::optional<std::string> list_text(Hal &hal, const std::string &kind, const Patterns &patterns) {
+std::optional<std::string> list_text(Instance &hal, const std::string &kind, const Patterns &patterns) {
     if (kind == "pin") {
         return names_of(pins(hal, patterns));
     }

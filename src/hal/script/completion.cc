@@ -21,7 +21,7 @@ struct Place {
     Words words;  ///< the command and its words so far, without arrows
     std::string start;
 
-    Hal &hal() const { return session.hal(); }
+    Instance &hal() const { return session.hal(); }
 };
 
 using Candidates = Words (*)(const Place &place);
@@ -41,36 +41,36 @@ Words names(const Items &items) {
 }
 
 Words any_pins(const Place &place) {
-    return names(place.hal().pins());
+    return names(place.hal().pins().list());
 }
 Words any_params(const Place &place) {
-    return names(place.hal().params());
+    return names(place.hal().params().list());
 }
 Words values(const Place &place) {
     return add(any_params(place), any_pins(place));
 }
 Words signals(const Place &place) {
-    return names(place.hal().signals());
+    return names(place.hal().signals().list());
 }
 Words functs(const Place &place) {
-    return names(place.hal().functs());
+    return names(place.hal().functions().list());
 }
 Words threads(const Place &place) {
-    return names(place.hal().threads());
+    return names(place.hal().threads().list());
 }
 Words components(const Place &place) {
-    return names(place.hal().components());
+    return names(place.hal().components().list());
 }
 
 /// Parameters and pins that setp accepts.
 Words settable(const Place &place) {
     Words words;
-    for (const ParamInfo &param : place.hal().params()) {
+    for (const ParamInfo &param : place.hal().params().list()) {
         if (param.dir == Dir::RW) {
             words.push_back(param.name);
         }
     }
-    for (const PinInfo &pin : place.hal().pins()) {
+    for (const PinInfo &pin : place.hal().pins().list()) {
         if (pin.dir != Dir::OUT && pin.signal.empty()) {
             words.push_back(pin.name);
         }
@@ -81,16 +81,16 @@ Words settable(const Place &place) {
 /// Pins that can be linked: of the type of the signal, or of the first pin.
 Words pins_to_link(const Place &place) {
     std::optional<Type> type;
-    if (place.words.size() > 1 && place.hal().hasSignal(place.words[1])) {
-        type = place.hal().signal(place.words[1])->type;
+    if (place.words.size() > 1 && place.hal().signals().has(place.words[1])) {
+        type = place.hal().signals().find(place.words[1])->type;
     }
     for (std::size_t i = 1; !type && i < place.words.size(); ++i) {
-        if (place.hal().hasPin(place.words[i])) {
-            type = place.hal().pin(place.words[i])->type;
+        if (place.hal().pins().has(place.words[i])) {
+            type = place.hal().pins().find(place.words[i])->type;
         }
     }
     Words words;
-    for (const PinInfo &pin : place.hal().pins()) {
+    for (const PinInfo &pin : place.hal().pins().list()) {
         if (pin.signal.empty() && (!type || pin.type == *type)) {
             words.push_back(pin.name);
         }
@@ -100,7 +100,7 @@ Words pins_to_link(const Place &place) {
 
 Words linked_pins(const Place &place) {
     Words words;
-    for (const PinInfo &pin : place.hal().pins()) {
+    for (const PinInfo &pin : place.hal().pins().list()) {
         if (!pin.signal.empty()) {
             words.push_back(pin.name);
         }
@@ -110,7 +110,7 @@ Words linked_pins(const Place &place) {
 
 Words programs(const Place &place) {
     Words words = {"all"};
-    for (const CompInfo &component : place.hal().components()) {
+    for (const CompInfo &component : place.hal().components().list()) {
         if (component.type == CompType::USER) {
             words.push_back(component.name);
         }

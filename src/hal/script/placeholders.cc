@@ -35,7 +35,7 @@ Placeholders::Program *Placeholders::owner_of(const std::string &pin) {
 }
 
 bool Placeholders::covers(const std::string &name) const {
-    return owner_of(name) != nullptr && !hal_.hasPin(name);
+    return owner_of(name) != nullptr && !hal_.pins().has(name);
 }
 
 void Placeholders::note(const std::string &pin) {
@@ -48,26 +48,26 @@ void Placeholders::note(const std::string &pin) {
 
 Result<> Placeholders::make(const std::string &pin, const std::string &signal, Type type) {
     if (comp_id_ == 0) {
-        const Result<int> made = hal_.new_component("left-out-programs");
+        const Result<int> made = hal_.components().create("left-out-programs");
         if (!made) {
             return std::unexpected(made.error());
         }
         comp_id_ = *made;
     }
     // Pins can be added only while a component is not ready.
-    (void)hal_.set_ready(comp_id_, false);
+    (void)hal_.components().set_ready(comp_id_, false);
     // An input never conflicts with another pin; as no pin writes the signal, it keeps its value.
-    const Result<void **> slot = hal_.new_pin(pin, type, Dir::IN, comp_id_);
+    const Result<void **> slot = hal_.pins().create(pin, type, Dir::IN, comp_id_);
     if (!slot) {
         return std::unexpected(slot.error());
     }
-    const Result<> ready = hal_.set_ready(comp_id_);
-    return ready ? hal_.link(pin, signal) : ready;
+    const Result<> ready = hal_.components().set_ready(comp_id_);
+    return ready ? hal_.signals().link(pin, signal) : ready;
 }
 
 Result<> Placeholders::link(const std::string &pin, const std::string &signal) {
     note(pin);
-    const Result<SignalInfo> info = hal_.signal(signal);
+    const Result<SignalInfo> info = hal_.signals().find(signal);
     if (!info) {
         waiting_.push_back({pin, signal});
         return {};
@@ -79,7 +79,7 @@ Result<> Placeholders::signal_made(const std::string &signal) {
     if (waiting_.empty()) {
         return {};
     }
-    const Result<SignalInfo> info = hal_.signal(signal);
+    const Result<SignalInfo> info = hal_.signals().find(signal);
     if (!info) {
         return {};
     }

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "base/result.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::hal::script {
 
 class Placeholders {
   public:
-    explicit Placeholders(Hal &hal) : hal_(hal) {}
+    explicit Placeholders(Instance &hal) : hal_(hal) {}
 
     /// Adds a program that was not started: pins whose name starts with its component or one of its words
     /// belong to it.
@@ -44,7 +44,7 @@ class Placeholders {
     const Program *owner_of(const std::string &pin) const;
     Result<> make(const std::string &pin, const std::string &signal, Type type);
 
-    Hal &hal_;
+    Instance &hal_;
     int comp_id_ = 0;
     std::vector<Program> programs_;
     std::vector<Waiting> waiting_;

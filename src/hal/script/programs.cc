@@ -82,7 +82,7 @@ Result<ProgramStart> SystemProgramHost::start(const ProgramRequest &request) {
 
 Result<> SystemProgramHost::wait_until_ready(const ProgramRequest &request, int pid) {
     for (long waited_ns = 0;; waited_ns += POLL_NS) {
-        const Result<CompInfo> component = hal_.component(request.component);
+        const Result<CompInfo> component = hal_.components().find(request.component);
         if (component && component->isReady) {
             return {};
         }
@@ -99,7 +99,7 @@ Result<> SystemProgramHost::wait_until_ready(const ProgramRequest &request, int 
             kill(pid, SIGTERM);
             return fail(fmt::format("stopped while waiting for component '{}'", request.component));
         }
-        if (const auto end = waited_ns % LOOK_NS == 0 ? hal_.host_end() : std::nullopt) {
+        if (const auto end = waited_ns % LOOK_NS == 0 ? hal_.host_status().end_reason() : std::nullopt) {
             kill(pid, SIGTERM);
             return fail(fmt::format("the realtime process has ended while component '{}' was awaited: {}",
                                     request.component, *end));
@@ -142,11 +142,11 @@ Result<> SystemProgramHost::wait_for_status(const ProgramRequest &request, int p
 }
 
 Result<> SystemProgramHost::stop(const std::string &component) {
-    const Result<CompInfo> info = hal_.component(component);
+    const Result<CompInfo> info = hal_.components().find(component);
     if (!info) {
         return std::unexpected(info.error());
     }
-    (void)hal_.expect_end(info->id);
+    (void)hal_.processes().expect_end(info->id);
     if (info->pid > 0 && info->pid != getpid() && kill(info->pid, SIGTERM) != 0 && errno != ESRCH) {
         return fail(fmt::format("cannot end component '{}' (process {}): {}", component, info->pid,
                                 std::strerror(errno)));
@@ -156,7 +156,7 @@ Result<> SystemProgramHost::stop(const std::string &component) {
 
 Result<> SystemProgramHost::stop_all() {
     Result<> result;
-    for (const CompInfo &component : hal_.components()) {
+    for (const CompInfo &component : hal_.components().list()) {
         const bool own = component.pid == getpid();
         if (component.type != CompType::USER || own) {
             continue;
@@ -175,7 +175,7 @@ Result<> SystemProgramHost::stop_all() {
     await_end(GRACE_NS);
     kill_programs();
     await_end(PATIENCE_NS);
-    hal_.reap_dead_components();
+    hal_.processes().reap_dead();
     return result;
 }
 
@@ -188,7 +188,7 @@ void SystemProgramHost::await_end(long longest_ns) {
 
 /// A program that ignores SIGTERM would outlive the machine, with its pins and the hardware that it controls.
 void SystemProgramHost::kill_programs() {
-    for (const CompInfo &component : hal_.components()) {
+    for (const CompInfo &component : hal_.components().list()) {
         if (isProgram(component) && kill(component.pid, SIGKILL) == 0) {
             language::tell(fmt::format("component '{}' (process {}) has not ended at SIGTERM: killed",
                                        component.name, component.pid));
@@ -203,7 +203,7 @@ void SystemProgramHost::kill_programs() {
 }
 
 bool SystemProgramHost::isComponent(int pid) const {
-    const auto components = hal_.components();
+    const auto components = hal_.components().list();
     return std::any_of(components.begin(), components.end(),
                        [pid](const CompInfo &component) { return component.pid == pid; });
 }
@@ -213,7 +213,7 @@ bool SystemProgramHost::isProgram(const CompInfo &component) {
 }
 
 bool SystemProgramHost::isProgramLeft() const {
-    for (const CompInfo &component : hal_.components()) {
+    for (const CompInfo &component : hal_.components().list()) {
         if (isProgram(component) && kill(component.pid, 0) == 0) {
             return true;
         }
@@ -225,12 +225,12 @@ bool SystemProgramHost::isProgramLeft() const {
 /// components never do.
 void SystemProgramHost::reap() {
     std::erase_if(children_, [](int pid) { return waitpid(pid, nullptr, WNOHANG) != 0; });
-    hal_.reap_dead_components();
+    hal_.processes().reap_dead();
 }
 
 Result<> SystemProgramHost::wait_for_end(const std::string &component) {
     while (true) {
-        const Result<CompInfo> info = hal_.component(component);
+        const Result<CompInfo> info = hal_.components().find(component);
         if (!info) {
             return {};
         }

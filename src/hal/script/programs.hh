@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::hal::script {
 
@@ -44,7 +44,7 @@ class ProgramHost {
 class SystemProgramHost final : public ProgramHost {
   public:
     /// Waiting fails when `stop` is not null and *stop is not zero.
-    explicit SystemProgramHost(Hal &hal, const volatile std::sig_atomic_t *stop = nullptr)
+    explicit SystemProgramHost(Instance &hal, const volatile std::sig_atomic_t *stop = nullptr)
         : hal_(hal), stop_(stop) {}
 
     Result<ProgramStart> start(const ProgramRequest &request) override;
@@ -62,7 +62,7 @@ class SystemProgramHost final : public ProgramHost {
     void kill_programs();
     void reap();
 
-    Hal &hal_;
+    Instance &hal_;
     bool isStopped() const { return stop_ != nullptr && *stop_ != 0; }
 
     const volatile std::sig_atomic_t *stop_;

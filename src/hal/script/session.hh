@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/result.hh"
-#include "hal/core/hal.hh"
 #include "hal/core/host.hh"
+#include "hal/core/instance.hh"
 #include "hal/script/lexer.hh"
 #include "hal/script/placeholders.hh"
 #include "hal/script/programs.hh"
@@ -117,7 +117,7 @@ class Session {
 
     // For the commands.
     Host &host() { return host_; }
-    Hal &hal() { return host_.hal(); }
+    Instance &hal() { return host_.hal(); }
     ProgramHost &programs() { return programs_; }
     Output &output() { return *output_; }
     SessionOptions &options() { return options_; }

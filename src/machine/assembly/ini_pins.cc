@@ -101,16 +101,17 @@ void IniPins::Pin::set(double to) {
 
 /// Also accepts LinuxCNC's name, with underscores.
 template <class T>
-void IniPins::make_named(hal::UserPin<T> &pin, const std::string &name, hal::Hal &hal, Result<> &status) {
+void IniPins::make_named(hal::UserPin<T> &pin, const std::string &name, hal::Instance &hal,
+                         Result<> &status) {
     std::string legacy = name;
     std::ranges::replace(legacy, '-', '_');
     pin.make(hal, comp_id_, legacy, hal::Dir::IN, status);
     if (status.has_value() && legacy != name) {
-        status = hal.alias_pin(legacy, name);
+        status = hal.pins().set_alias(legacy, name);
     }
 }
 
-void IniPins::make_pins(int num_joints, const Defaults &defaults, hal::Hal &hal, Result<> &status) {
+void IniPins::make_pins(int num_joints, const Defaults &defaults, hal::Instance &hal, Result<> &status) {
     const auto make = [&](const std::string &prefix, const IniPin &row, int index) {
         Pin pin;
         pin.name = prefix + std::string(row.name);
@@ -146,9 +147,9 @@ void IniPins::make_pins(int num_joints, const Defaults &defaults, hal::Hal &hal,
     make_named(corner_scale_, "ini.traj-scurve-peak-scale", hal, status);
 }
 
-Result<> IniPins::create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints,
-                         const Defaults &defaults) {
-    const auto id = hal.new_component("inihal");
+Result<> IniPins::create(hal::Instance &hal, const std::vector<motion::SetParameter> &parameters,
+                         int num_joints, const Defaults &defaults) {
+    const auto id = hal.components().create("inihal");
     if (!id.has_value()) {
         return std::unexpected(id.error());
     }
@@ -175,7 +176,7 @@ Result<> IniPins::create(hal::Hal &hal, const std::vector<motion::SetParameter> 
     }
     planner_type_ = last_type_;
     corner_scale_ = last_scale_;
-    status = hal.set_ready(comp_id_);
+    status = hal.components().set_ready(comp_id_);
     if (!status.has_value()) {
         destroy();
     }
@@ -184,7 +185,7 @@ Result<> IniPins::create(hal::Hal &hal, const std::vector<motion::SetParameter> 
 
 void IniPins::destroy() {
     if (hal_ != nullptr) {
-        static_cast<void>(hal_->delete_component(comp_id_));
+        static_cast<void>(hal_->components().remove(comp_id_));
         hal_ = nullptr;
         pins_.clear();
     }

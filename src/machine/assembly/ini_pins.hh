@@ -22,7 +22,7 @@ class IniPins {
         double velocity = 0, acceleration = 0;
     };
     /// Makes the component and its pins.
-    Result<> create(hal::Hal &hal, const std::vector<motion::SetParameter> &parameters, int num_joints,
+    Result<> create(hal::Instance &hal, const std::vector<motion::SetParameter> &parameters, int num_joints,
                     const Defaults &defaults);
     void destroy();
     /// Sends changes since the last call to task. Speeds and accelerations wait until nothing moves in a jog
@@ -49,12 +49,12 @@ class IniPins {
         void set(double to);
     };
     template <class T>
-    void make_named(hal::UserPin<T> &pin, const std::string &name, hal::Hal &hal, Result<> &status);
-    void make_pins(int num_joints, const Defaults &defaults, hal::Hal &hal, Result<> &status);
+    void make_named(hal::UserPin<T> &pin, const std::string &name, hal::Instance &hal, Result<> &status);
+    void make_pins(int num_joints, const Defaults &defaults, hal::Instance &hal, Result<> &status);
     bool isTaken(const Pin &pin, double value, task::Task &task) const;
     void step(Pin &pin, task::Task &task);
 
-    hal::Hal *hal_ = nullptr;
+    hal::Instance *hal_ = nullptr;
     int comp_id_ = 0;
     std::vector<Pin> pins_;
     hal::UserPin<std::int32_t> planner_type_;

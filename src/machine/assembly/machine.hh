@@ -72,7 +72,7 @@ class Machine {
     virtual mailbox::Segment &mailbox() = 0;
     virtual task::Task &task() = 0;
     virtual motion::Channels &channels() = 0;
-    virtual hal::Hal &hal() = 0;
+    virtual hal::Instance &hal() = 0;
     /// Stores small files without waiting for the disk; null under the virtual clock. [task's thread]
     virtual journal::Writer *journal() { return nullptr; }
 };

@@ -126,9 +126,9 @@ class RealtimeMachine final : public Machine {
     }
     RealtimeFigures realtime_figures() const override {
         RealtimeFigures figures;
-        figures.realtime = host_->hal().isRealtime();
-        figures.missing = host_->hal().realtime_missing();
-        for (const hal::ThreadInfo &thread : host_->hal().threads()) {
+        figures.realtime = host_->hal().host_status().isRealtime();
+        figures.missing = host_->hal().host_status().realtime_missing();
+        for (const hal::ThreadInfo &thread : host_->hal().threads().list()) {
             figures.overruns += thread.overruns;
             figures.max_latency_ns = std::max(figures.max_latency_ns, thread.max_latency_ns);
         }
@@ -139,7 +139,7 @@ class RealtimeMachine final : public Machine {
     task::Task &task() override { return side_->task(); }
     journal::Writer *journal() override { return side_->journal(); }
     motion::Channels &channels() override { return side_->channels(); }
-    hal::Hal &hal() override { return host_->hal(); }
+    hal::Instance &hal() override { return host_->hal(); }
 
   private:
     /// In the thread of the cycles.

@@ -71,7 +71,7 @@ Result<> TaskSide::start(const MachineOptions &options) {
     status = status.has_value() ? run_hal_files(options) : status;
     status = status.has_value() ? link_estop_chain() : status;
     status = status.has_value() ? join_motion() : status;
-    status = status.has_value() ? host_.hal().start_threads() : status;
+    status = status.has_value() ? host_.hal().threads().start() : status;
     if (!status.has_value()) {
         return status;
     }
@@ -141,7 +141,8 @@ void TaskSide::tell_tool_change(ToolHand hand, const std::string &text) {
 }
 
 Result<> TaskSide::join_motion() {
-    const auto block = host_.hal().shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
+    const auto block =
+        host_.hal().memory().shared_block(motion::Channels::SHMEM_KEY, sizeof(motion::Channels));
     if (!block.has_value()) {
         return std::unexpected(block.error());
     }
@@ -157,9 +158,9 @@ Result<> TaskSide::join_motion() {
 }
 
 Result<> TaskSide::link_estop_chain() {
-    hal::Hal &hal = host_.hal();
-    const auto chain = hal.pin(ESTOP_PIN);
-    const auto motion_pin = hal.pin(MOTION_ESTOP_PIN);
+    hal::Instance &hal = host_.hal();
+    const auto chain = hal.pins().find(ESTOP_PIN);
+    const auto motion_pin = hal.pins().find(MOTION_ESTOP_PIN);
     const bool linkable =
         chain.has_value() && !chain->signal.empty() && motion_pin.has_value() && motion_pin->signal.empty();
     if (chain.has_value() && chain->signal.empty()) {
@@ -167,7 +168,7 @@ Result<> TaskSide::link_estop_chain() {
                                 " is not linked: the machine stays in emergency stop",
                             {parts_.ini.path(), 0, 0});
     }
-    return linkable ? hal.link(MOTION_ESTOP_PIN, chain->signal) : Result<>{};
+    return linkable ? hal.signals().link(MOTION_ESTOP_PIN, chain->signal) : Result<>{};
 }
 
 Result<bool> TaskSide::isConfigured() {

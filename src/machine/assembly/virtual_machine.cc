@@ -28,7 +28,7 @@ class VirtualMachine final : public Machine {
     }
 
     Result<> start(const MachineOptions &options) {
-        hal::HalOptions hal_options;
+        hal::InstanceOptions hal_options;
         hal_options.scheduler = &scheduler_;
         auto host = hal::LocalHost::create(hal_options);
         if (!host.has_value()) {
@@ -68,7 +68,7 @@ class VirtualMachine final : public Machine {
     mailbox::Segment &mailbox() override { return side_->mailbox(); }
     task::Task &task() override { return side_->task(); }
     motion::Channels &channels() override { return side_->channels(); }
-    hal::Hal &hal() override { return host_->hal(); }
+    hal::Instance &hal() override { return host_->hal(); }
 
   private:
     void task_cycle() {

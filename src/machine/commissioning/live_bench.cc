@@ -15,9 +15,9 @@ std::vector<std::string> watchdog_commands() {
             "net commissioning-alive watchdog.ok-out => motion.enable"};
 }
 
-LiveBench::LiveBench(client::Client &client, hal::Hal &hal, int joints)
+LiveBench::LiveBench(client::Client &client, hal::Instance &hal, int joints)
     : client_(client), hal_(hal), joints_(joints) {
-    estop_ = find_bit(hal.hasSignal("estop-released") ? "estop-released" : "iocontrol.0.emc-enable-in");
+    estop_ = find_bit(hal.signals().has("estop-released") ? "estop-released" : "iocontrol.0.emc-enable-in");
     probe_ = find_bit("motion.probe-input");
     watchdog_beat_ = find_bit("watchdog.input-0");
     watchdog_enable_ = find_bit("watchdog.enable-in");
@@ -27,7 +27,7 @@ LiveBench::LiveBench(client::Client &client, hal::Hal &hal, int joints)
 }
 
 volatile bool *LiveBench::find_bit(const std::string &name) {
-    const auto address = hal_.address_of(name, hal::Type::BIT);
+    const auto address = hal_.values().address_of(name, hal::Type::BIT);
     return address.has_value() ? static_cast<volatile bool *>(*address) : nullptr;
 }
 
@@ -84,7 +84,7 @@ JointReading LiveBench::joint(int joint) const {
 
 std::uint64_t LiveBench::late_cycles() const {
     std::uint64_t late = 0;
-    for (const hal::ThreadInfo &thread : hal_.threads()) {
+    for (const hal::ThreadInfo &thread : hal_.threads().list()) {
         late += thread.overruns;
     }
     return late;
@@ -92,7 +92,7 @@ std::uint64_t LiveBench::late_cycles() const {
 
 double LiveBench::worst_latency_s() const {
     std::int64_t worst_ns = 0;
-    for (const hal::ThreadInfo &thread : hal_.threads()) {
+    for (const hal::ThreadInfo &thread : hal_.threads().list()) {
         worst_ns = std::max(worst_ns, thread.max_latency_ns);
     }
     constexpr double S_PER_NS = 1e-9;
@@ -131,16 +131,16 @@ void LiveBench::post_waiting() {
 }
 
 Result<> LiveBench::close_gate(int joint) {
-    const auto output = hal_.pin(fmt::format("joint.{}.amp-enable-out", joint));
+    const auto output = hal_.pins().find(fmt::format("joint.{}.amp-enable-out", joint));
     if (!output.has_value() || output->signal.empty()) {
         return {};
     }
-    for (const hal::PinInfo &pin : hal_.pins()) {
+    for (const hal::PinInfo &pin : hal_.pins().list()) {
         if (pin.signal == output->signal && pin.dir == hal::Dir::IN) {
-            auto done = hal_.unlink(pin.name);
+            auto done = hal_.signals().unlink(pin.name);
             if (done.has_value()) {
                 gates_.push_back({joint, pin.name, pin.signal});
-                done = hal_.set(pin.name, hal::Value::of_bit(false));
+                done = hal_.values().set(pin.name, hal::Value::of_bit(false));
             }
             if (!done.has_value()) {
                 return done;
@@ -152,7 +152,7 @@ Result<> LiveBench::close_gate(int joint) {
 
 Result<> LiveBench::open_gates() {
     for (; !gates_.empty(); gates_.pop_back()) {
-        if (auto done = hal_.link(gates_.back().pin, gates_.back().signal); !done.has_value()) {
+        if (auto done = hal_.signals().link(gates_.back().pin, gates_.back().signal); !done.has_value()) {
             return done;
         }
     }
@@ -223,12 +223,12 @@ void LiveBench::stop_spindle() {
 }
 
 std::optional<double> LiveBench::value(std::string_view name) const {
-    const auto value = hal_.get(name);
+    const auto value = hal_.values().get(name);
     return value.has_value() ? std::optional(value->as_number()) : std::nullopt;
 }
 
 void LiveBench::set_value(std::string_view name, double value) {
-    const auto current = hal_.get(name);
+    const auto current = hal_.values().get(name);
     if (!current.has_value()) {
         return reject(current.error().str());
     }
@@ -236,7 +236,7 @@ void LiveBench::set_value(std::string_view name, double value) {
     const std::string text = is_bit                              ? std::string(value != 0 ? "1" : "0")
                              : current->type == hal::Type::FLOAT ? fmt::format("{}", value)
                                                                  : fmt::format("{}", std::llround(value));
-    if (const auto done = hal_.set(name, text); !done.has_value()) {
+    if (const auto done = hal_.values().set(name, text); !done.has_value()) {
         reject(done.error().str());
     }
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 #include "machine/commissioning/bench.hh"
 #include "messages/client/client.hh"
 
@@ -21,7 +21,7 @@ std::vector<std::string> watchdog_commands();
 /// One thread. update() in each task cycle, before the guide. The machine has run watchdog_commands().
 class LiveBench final : public Bench {
   public:
-    LiveBench(client::Client &client, hal::Hal &hal, int joints);
+    LiveBench(client::Client &client, hal::Instance &hal, int joints);
 
     void update();
 
@@ -66,7 +66,7 @@ class LiveBench final : public Bench {
     volatile bool *find_bit(const std::string &name);
 
     client::Client &client_;
-    hal::Hal &hal_;
+    hal::Instance &hal_;
     int joints_;
     std::vector<Gate> gates_;
     std::deque<messages::Command> waiting_;

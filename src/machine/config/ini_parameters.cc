@@ -16,9 +16,9 @@ std::optional<double> IniParameters::hal_value(std::string_view name) const {
     }
     // G-code ignores case: a key that does not exist as written may exist in lower case.
     for (const std::string &spelling : {std::string(name), to_lower(name)}) {
-        auto value = hal_->get(spelling);
+        auto value = hal_->values().get(spelling);
         if (!value.has_value()) {
-            value = hal_->get_signal(spelling);
+            value = hal_->signals().get(spelling);
         }
         if (value.has_value()) {
             return value->as_number();

@@ -4,14 +4,14 @@
 
 #include "base/ini/ini_reader.hh"
 #include "gcode/interpreter/world.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::machine {
 
 class IniParameters final : public gcode::ParameterSource {
   public:
     /// `hal` may be null: then HAL values are unknown.
-    IniParameters(const ini::IniFile &ini, const hal::Hal *hal) : ini_(ini), hal_(hal) {}
+    IniParameters(const ini::IniFile &ini, hal::Instance *hal) : ini_(ini), hal_(hal) {}
 
     /// Section and key in upper or lower case, because G-code ignores case.
     std::optional<double> ini_value(std::string_view section, std::string_view key) const override;
@@ -19,7 +19,7 @@ class IniParameters final : public gcode::ParameterSource {
 
   private:
     const ini::IniFile &ini_;
-    const hal::Hal *hal_;
+    hal::Instance *hal_;
 };
 
 }  // namespace mw::machine

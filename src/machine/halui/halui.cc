@@ -20,8 +20,8 @@ bool isRenewal(const messages::Command &command) {
 
 }  // namespace
 
-Result<> Halui::create(hal::Hal &hal, const HaluiSettings &settings) {
-    const auto id = hal.new_component("halui");
+Result<> Halui::create(hal::Instance &hal, const HaluiSettings &settings) {
+    const auto id = hal.components().create("halui");
     if (!id.has_value()) {
         return std::unexpected(id.error());
     }
@@ -32,7 +32,7 @@ Result<> Halui::create(hal::Hal &hal, const HaluiSettings &settings) {
     Result<> status;
     make_pins(status);
     if (status.has_value()) {
-        status = hal.set_ready(comp_id_);
+        status = hal.components().set_ready(comp_id_);
     }
     if (!status.has_value()) {
         destroy();
@@ -95,7 +95,7 @@ void Halui::make_buttons(const Table &table, int instance, int number, Result<> 
 
 void Halui::destroy() {
     if (hal_ != nullptr) {
-        static_cast<void>(hal_->delete_component(comp_id_));
+        static_cast<void>(hal_->components().remove(comp_id_));
         hal_ = nullptr;
         buttons_.clear();
         client_.reset();

@@ -34,7 +34,7 @@ struct HaluiSettings {
 class Halui {
   public:
     /// Creates the component "halui" and its pins.
-    Result<> create(hal::Hal &hal, const HaluiSettings &settings);
+    Result<> create(hal::Instance &hal, const HaluiSettings &settings);
     void destroy();
 
     /// Joins as a panel, which works independently of the right to operate of other clients.
@@ -63,7 +63,7 @@ class Halui {
     bool hasAxis(int axis) const { return ((settings_.axis_mask >> static_cast<unsigned>(axis)) & 1U) != 0; }
 
     HaluiSettings settings_;
-    hal::Hal *hal_ = nullptr;
+    hal::Instance *hal_ = nullptr;
     std::optional<client::Client> client_;
     int comp_id_ = 0;
     int joint_ = 0, axis_ = 0;  ///< selected joint and axis

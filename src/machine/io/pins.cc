@@ -5,8 +5,8 @@
 
 namespace mw::io {
 
-Result<> Pins::create(hal::Hal &hal) {
-    const auto id = hal.new_component("iocontrol");
+Result<> Pins::create(hal::Instance &hal) {
+    const auto id = hal.components().create("iocontrol");
     if (!id.has_value()) {
         return std::unexpected(id.error());
     }
@@ -15,7 +15,7 @@ Result<> Pins::create(hal::Hal &hal) {
     Result<> status;
     pins_.make(hal, comp_id_, 0, status);
     if (status.has_value()) {
-        status = hal.set_ready(comp_id_);
+        status = hal.components().set_ready(comp_id_);
     }
     if (!status.has_value()) {
         destroy();
@@ -25,14 +25,14 @@ Result<> Pins::create(hal::Hal &hal) {
 
 void Pins::destroy() {
     if (hal_ != nullptr) {
-        static_cast<void>(hal_->delete_component(comp_id_));
+        static_cast<void>(hal_->components().remove(comp_id_));
         hal_ = nullptr;
         block_ = nullptr;
     }
 }
 
 Result<> Pins::join_tool_offset() {
-    const auto memory = hal_->shared_block(ToolOffsetBlock::SHMEM_KEY, sizeof(ToolOffsetBlock));
+    const auto memory = hal_->memory().shared_block(ToolOffsetBlock::SHMEM_KEY, sizeof(ToolOffsetBlock));
     if (!memory.has_value()) {
         return std::unexpected(memory.error());
     }

@@ -14,7 +14,7 @@ namespace mw::io {
 class Pins {
   public:
     /// Creates the component and its pins.
-    Result<> create(hal::Hal &hal);
+    Result<> create(hal::Instance &hal);
     /// Removes the component and its pins.
     void destroy();
 
@@ -26,7 +26,7 @@ class Pins {
     void write(const Outputs &outputs);
 
   private:
-    hal::Hal *hal_ = nullptr;
+    hal::Instance *hal_ = nullptr;
     int comp_id_ = 0;
     hal::UserPinSet<pins::IOCONTROL> pins_;
     ToolOffsetBlock *block_ = nullptr;  ///< null: no tool offset pins

@@ -19,8 +19,8 @@ std::string text_of(ToolHand hand, std::int32_t number) {
 
 }  // namespace
 
-Result<> ManualToolChange::create(hal::Hal &hal, ToolHand hand, Notice notice) {
-    const auto id = hal.new_component("hal_manualtoolchange");
+Result<> ManualToolChange::create(hal::Instance &hal, ToolHand hand, Notice notice) {
+    const auto id = hal.components().create("hal_manualtoolchange");
     if (!id.has_value()) {
         return std::unexpected(id.error());
     }
@@ -33,12 +33,12 @@ Result<> ManualToolChange::create(hal::Hal &hal, ToolHand hand, Notice notice) {
     changed_.make(hal, comp_id_, "hal_manualtoolchange.changed", hal::Dir::OUT, status);
     change_button_.make(hal, comp_id_, "hal_manualtoolchange.change_button", hal::Dir::IN, status);
     number_.make(hal, comp_id_, "hal_manualtoolchange.number", hal::Dir::IN, status);
-    return status.has_value() ? hal.set_ready(comp_id_) : status;
+    return status.has_value() ? hal.components().set_ready(comp_id_) : status;
 }
 
 void ManualToolChange::destroy() {
     if (hal_ != nullptr) {
-        static_cast<void>(hal_->delete_component(comp_id_));
+        static_cast<void>(hal_->components().remove(comp_id_));
         hal_ = nullptr;
     }
 }

@@ -23,7 +23,7 @@ class ManualToolChange {
   public:
     using Notice = std::function<void(const std::string &)>;
 
-    Result<> create(hal::Hal &hal, ToolHand hand, Notice notice);
+    Result<> create(hal::Instance &hal, ToolHand hand, Notice notice);
     void destroy();
     void step(std::int64_t now_ns);
 
@@ -35,7 +35,7 @@ class ManualToolChange {
     void confirm() { confirmed_ = confirmed_ || isAsking(); }
 
   private:
-    hal::Hal *hal_ = nullptr;
+    hal::Instance *hal_ = nullptr;
     int comp_id_ = 0;
     ToolHand hand_ = ToolHand::SIMULATED;
     bool confirmed_ = false;

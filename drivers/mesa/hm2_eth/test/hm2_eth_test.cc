@@ -68,7 +68,7 @@ TEST_F(HmEth, FindsSmartSerialCardsOfAVirtualBoardOnPci) {
     std::ofstream(physics) << "remote 0 card=7i76\n";
     ::setenv("MILLWRIGHT_MESA", ("hm2_pci=5i25:" + physics).c_str(), 1);
     Bench bench{"loadrt hostmot2\nloadrt hm2_pci\naddf hm2_5i25.0.read t\naddf hm2_5i25.0.write t"};
-    EXPECT_FALSE(bench.hal().pins("hm2_5i25.0.7i76.0.0.input-00").empty());
+    EXPECT_FALSE(bench.hal().pins().list("hm2_5i25.0.7i76.0.0.input-00").empty());
     bench.pass(1000);
     EXPECT_EQ(bench.get("hm2_5i25.0.sserial.port-0.port_state"), 3.0) << "running";
     EXPECT_EQ(bench.get("hm2_5i25.0.sserial.port-0.fault"), 0.0);
@@ -77,8 +77,8 @@ TEST_F(HmEth, FindsSmartSerialCardsOfAVirtualBoardOnPci) {
 TEST_F(HmEth, TakesModelsFromTheEnvironmentForFilesOfOthers) {
     ::setenv("MILLWRIGHT_MESA", "10.0.0.1=7i92,192.168.1.121=7i96s", 1);
     Bench bench{"loadrt hostmot2\nloadrt hm2_eth board_ip=192.168.1.121,10.0.0.1"};
-    EXPECT_FALSE(bench.hal().pins("hm2_7i96s.0.packet-error").empty());
-    EXPECT_FALSE(bench.hal().pins("hm2_7i92.0.packet-error").empty());
+    EXPECT_FALSE(bench.hal().pins().list("hm2_7i96s.0.packet-error").empty());
+    EXPECT_FALSE(bench.hal().pins().list("hm2_7i92.0.packet-error").empty());
 }
 
 TEST_F(HmEth, AsksNoBoardUnderTheVirtualClock) {

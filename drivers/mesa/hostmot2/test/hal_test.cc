@@ -18,9 +18,9 @@ class BoardInHal : public ::testing::Test {
         ASSERT_EQ(machine.load("hostmot2"), "ok");
         ASSERT_EQ(machine.load("threads2"), "ok");
         ASSERT_EQ(machine.load("hm2_memory", {"config=" + config}), "ok") << machine.messages.all();
-        ASSERT_TRUE(machine.hal().add_function("hm2_7i76e.0.read", "fast"));
-        ASSERT_TRUE(machine.hal().add_function("hm2_7i76e.0.write", "fast"));
-        ASSERT_TRUE(machine.hal().start_threads());
+        ASSERT_TRUE(machine.hal().threads().add_function("hm2_7i76e.0.read", "fast"));
+        ASSERT_TRUE(machine.hal().threads().add_function("hm2_7i76e.0.write", "fast"));
+        ASSERT_TRUE(machine.hal().threads().start());
         run();
     }
     void run(int steps = 4) {
@@ -29,7 +29,7 @@ class BoardInHal : public ::testing::Test {
         }
     }
     void set(const std::string &name, const std::string &value) {
-        ASSERT_EQ(hal::text_of(machine.hal().set("hm2_7i76e.0." + name, value)), "ok") << name;
+        ASSERT_EQ(hal::text_of(machine.hal().values().set("hm2_7i76e.0." + name, value)), "ok") << name;
     }
     double get(const std::string &name) { return machine.value("hm2_7i76e.0." + name).as_number(); }
 
@@ -39,10 +39,10 @@ class BoardInHal : public ::testing::Test {
 TEST_F(BoardInHal, HasThePinsOfItsModules) {
     load();
     std::map<std::string, std::pair<Type, Dir>> found;
-    for (const hal::PinInfo &pin : machine.hal().pins("hm2_7i76e.0.*")) {
+    for (const hal::PinInfo &pin : machine.hal().pins().list("hm2_7i76e.0.*")) {
         found[pin.name.substr(12)] = {pin.type, pin.dir};
     }
-    for (const hal::ParamInfo &param : machine.hal().params("hm2_7i76e.0.*")) {
+    for (const hal::ParamInfo &param : machine.hal().params().list("hm2_7i76e.0.*")) {
         found[param.name.substr(12)] = {param.type, param.dir};
     }
     const std::map<std::string, std::pair<Type, Dir>> expected{
@@ -93,8 +93,8 @@ TEST_F(BoardInHal, HasDefaultsAndFollowsItsPins) {
 
 TEST_F(BoardInHal, ReleasesPinsByItsConfiguration) {
     load("num_stepgens=0");
-    EXPECT_TRUE(machine.hal().get("hm2_7i76e.0.gpio.000.out").has_value());
-    EXPECT_FALSE(machine.hal().get("hm2_7i76e.0.stepgen.00.enable").has_value());
+    EXPECT_TRUE(machine.hal().values().get("hm2_7i76e.0.gpio.000.out").has_value());
+    EXPECT_FALSE(machine.hal().values().get("hm2_7i76e.0.stepgen.00.enable").has_value());
 }
 
 TEST_F(BoardInHal, OtherComponentsUseItsSerialInterfaces) {
@@ -104,9 +104,9 @@ TEST_F(BoardInHal, OtherComponentsUseItsSerialInterfaces) {
     EXPECT_NE(machine.load("uart_user", {"name=hm2_7i76e.0.uart.1"}), "ok") << "there is one UART";
     ASSERT_EQ(machine.load("uart_user", {"name=hm2_7i76e.0.uart.0"}), "ok") << machine.messages.all();
     for (const char *function : {"hm2_7i76e.0.read", "uart-user", "hm2_7i76e.0.write"}) {
-        ASSERT_TRUE(machine.hal().add_function(function, "fast"));
+        ASSERT_TRUE(machine.hal().threads().add_function(function, "fast"));
     }
-    ASSERT_TRUE(machine.hal().start_threads());
+    ASSERT_TRUE(machine.hal().threads().start());
     run();
     EXPECT_EQ(machine.value("uart-user.sent").as_number(), 3.0);
     EXPECT_EQ(machine.value("uart-user.received").as_number(), 0.0);
@@ -119,7 +119,7 @@ TEST_F(BoardInHal, IsRefusedWithAWrongConfiguration) {
         machine.messages.all().find("hm2/hm2_7i76e.0: config: num_encoders=3, but this firmware has 1."),
         std::string::npos)
         << machine.messages.all();
-    EXPECT_TRUE(machine.hal().pins("hm2_7i76e.*").empty());
+    EXPECT_TRUE(machine.hal().pins().list("hm2_7i76e.*").empty());
 }
 
 TEST_F(BoardInHal, EveryTestBoardIsRefused) {

@@ -124,12 +124,12 @@ TEST_F(PciMachine, LoadsEachCardWithItsConfiguration) {
     ASSERT_EQ(machine.load("hostmot2"), "ok");
     ASSERT_EQ(machine.load("hm2_pci", {"config=num_encoders=2 num_stepgens=1,num_stepgens=3"}), "ok")
         << machine.messages.all();
-    EXPECT_EQ(machine.hal().pins("hm2_5i20.0.stepgen.*.position-cmd").size(), 1U);
-    EXPECT_EQ(machine.hal().pins("hm2_5i20.0.encoder.*.count").size(), 2U);
-    EXPECT_EQ(machine.hal().pins("hm2_5i25.0.stepgen.*.position-cmd").size(), 3U);
-    EXPECT_EQ(machine.hal().pins("hm2_5i20.0.led.*").size(), 8U);
-    EXPECT_EQ(machine.hal().pins("hm2_5i25.0.led.*").size(), 2U);
-    EXPECT_EQ(machine.hal().params("hm2_5i20.0.io_error").size(), 1U);
+    EXPECT_EQ(machine.hal().pins().list("hm2_5i20.0.stepgen.*.position-cmd").size(), 1U);
+    EXPECT_EQ(machine.hal().pins().list("hm2_5i20.0.encoder.*.count").size(), 2U);
+    EXPECT_EQ(machine.hal().pins().list("hm2_5i25.0.stepgen.*.position-cmd").size(), 3U);
+    EXPECT_EQ(machine.hal().pins().list("hm2_5i20.0.led.*").size(), 8U);
+    EXPECT_EQ(machine.hal().pins().list("hm2_5i25.0.led.*").size(), 2U);
+    EXPECT_EQ(machine.hal().params().list("hm2_5i20.0.io_error").size(), 1U);
     for (const unsigned descriptor : {0x28U, 0x2CU, 0x30U, 0x34U}) {
         EXPECT_EQ(word("0000:01:00.0/resource0", descriptor), 2U) << "the bridge is made ready";
     }
@@ -141,9 +141,9 @@ TEST_F(PciMachine, ACycleReadsAndWritesAndAFaultStopsIt) {
     ASSERT_EQ(machine.load("hostmot2"), "ok");
     ASSERT_EQ(machine.load("threads2"), "ok");
     ASSERT_EQ(machine.load("hm2_pci"), "ok") << machine.messages.all();
-    ASSERT_TRUE(machine.hal().add_function("hm2_6i25.0.read", "fast"));
-    ASSERT_TRUE(machine.hal().add_function("hm2_6i25.0.write", "fast"));
-    ASSERT_TRUE(machine.hal().start_threads());
+    ASSERT_TRUE(machine.hal().threads().add_function("hm2_6i25.0.read", "fast"));
+    ASSERT_TRUE(machine.hal().threads().add_function("hm2_6i25.0.write", "fast"));
+    ASSERT_TRUE(machine.hal().threads().start());
     const auto run = [&](int steps) {
         for (int i = 0; i < steps; ++i) {
             machine.clock.step();
@@ -180,7 +180,7 @@ TEST_F(PciMachine, ACardWithoutFirmwareIsRejected) {
     EXPECT_NE(machine.messages.all().find("The board 5i24 at PCI 0000:02:00.0 has no HostMot2 firmware"),
               std::string::npos)
         << machine.messages.all();
-    EXPECT_TRUE(machine.hal().pins("hm2_5i24.*").empty());
+    EXPECT_TRUE(machine.hal().pins().list("hm2_5i24.*").empty());
 }
 
 TEST_F(PciMachine, AMachineWithoutACardIsAnError) {

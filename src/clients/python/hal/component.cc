@@ -75,7 +75,7 @@ void Item::set(py::handle value) {
 
 Component::Component(const std::string &component_name, const std::string &item_prefix)
     : name(component_name), prefix(item_prefix.empty() ? component_name : item_prefix), hal_(instance()) {
-    const auto id = hal_->new_component(name);
+    const auto id = hal_->components().create(name);
     if (!id) {
         throw_hal_error(id.error().str());
     }
@@ -86,7 +86,7 @@ Component::Component(const std::string &component_name, const std::string &item_
 Component::~Component() {
     if (id_ != 0) {
         // An error here means that the instance is gone, and the component with it.
-        static_cast<void>(hal_->delete_component(id_));
+        static_cast<void>(hal_->components().remove(id_));
         --components_alive;
     }
     for (auto &[key, item] : items) {
@@ -114,17 +114,17 @@ std::shared_ptr<Item> Component::new_item(const std::string &item_name, int type
     item->dir = isPin ? pin_dir_of(dir) : param_dir_of(dir);
     const std::string full = prefix + "." + item_name;
     if (isPin) {
-        const auto slot = hal_->new_pin(full, item->type, item->dir, id());
+        const auto slot = hal_->pins().create(full, item->type, item->dir, id());
         if (!slot) {
             throw_hal_error(slot.error().str());
         }
         item->slot = *slot;
     } else {
-        item->place = hal_->allocate(sizeof(std::uint64_t));
+        item->place = hal_->memory().allocate(sizeof(std::uint64_t));
         if (item->place == nullptr) {
             throw_hal_error("no HAL memory left");
         }
-        check(hal_->new_param(full, item->type, item->dir, item->place, id()));
+        check(hal_->params().create(full, item->type, item->dir, item->place, id()));
     }
     items.emplace(item_name, item);
     return item;
@@ -147,7 +147,7 @@ std::shared_ptr<Item> Component::item(const std::string &item_name, bool isPin) 
 }
 
 void Component::set_ready(bool ready) {
-    check(hal_->set_ready(id(), ready));
+    check(hal_->components().set_ready(id(), ready));
 }
 
 void Component::exit() {
@@ -157,7 +157,7 @@ void Component::exit() {
     for (auto &[key, item] : items) {
         item->isEnded = true;
     }
-    check(hal_->delete_component(ending));
+    check(hal_->components().remove(ending));
 }
 
 namespace {

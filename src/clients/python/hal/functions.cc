@@ -63,11 +63,11 @@ Value value_for(Type type, py::handle object) {
 
 bool set_pin_or_param(const std::string &name, py::handle object) {
     const HalHandle hal = instance();
-    const auto now = hal->get(name);
+    const auto now = hal->values().get(name);
     if (!now) {
         throw_runtime(now.error().str());
     }
-    const Result<> done = hal->set(name, value_for(now->type, object));
+    const Result<> done = hal->values().set(name, value_for(now->type, object));
     if (!done) {
         throw_runtime(done.error().str());
     }
@@ -76,13 +76,14 @@ bool set_pin_or_param(const std::string &name, py::handle object) {
 
 bool set_signal(const std::string &name, py::handle object) {
     const HalHandle hal = instance();
-    const auto now = hal->get_signal(name);
+    const auto now = hal->signals().get(name);
     if (!now) {
         throw_runtime(now.error().str());
     }
     // A port signal is set to the size of its queue.
-    const Result<> done = now->type == Type::PORT ? hal->set_signal(name, py::str(object).cast<std::string>())
-                                                  : hal->set_signal(name, value_for(now->type, object));
+    const Result<> done = now->type == Type::PORT
+                              ? hal->signals().set(name, py::str(object).cast<std::string>())
+                              : hal->signals().set(name, value_for(now->type, object));
     if (!done) {
         throw_runtime(done.error().str());
     }
@@ -99,7 +100,7 @@ py::object value_or_throw(const Result<Value> &value) {
 /// Pin, parameter or signal.
 py::object get_value(const std::string &name) {
     const HalHandle hal = instance();
-    for (const auto &value : {hal->get_pin(name), hal->get_param(name), hal->get_signal(name)}) {
+    for (const auto &value : {hal->pins().get(name), hal->params().get(name), hal->signals().get(name)}) {
         if (value) {
             return to_python(*value);
         }
@@ -109,18 +110,18 @@ py::object get_value(const std::string &name) {
 
 bool pin_has_writer(const std::string &name) {
     const HalHandle hal = instance();
-    const auto pin = hal->pin(name);
+    const auto pin = hal->pins().find(name);
     if (!pin) {
         PyErr_SetString(PyExc_NameError, pin.error().str().c_str());
         throw py::error_already_set();
     }
-    const auto signal = pin->signal.empty() ? fail("not linked") : hal->signal(pin->signal);
+    const auto signal = pin->signal.empty() ? fail("not linked") : hal->signals().find(pin->signal);
     return signal && signal->writers > 0;
 }
 
 py::list info_pins() {
     py::list all;
-    for (const hal::PinInfo &pin : instance()->pins()) {
+    for (const hal::PinInfo &pin : instance()->pins().list()) {
         all.append(py::dict(py::arg("NAME") = pin.name, py::arg("VALUE") = to_python(pin.value),
                             py::arg("DIRECTION") = static_cast<int>(pin.dir),
                             py::arg("TYPE") = static_cast<int>(pin.type)));
@@ -130,7 +131,7 @@ py::list info_pins() {
 
 py::list info_params() {
     py::list all;
-    for (const hal::ParamInfo &param : instance()->params()) {
+    for (const hal::ParamInfo &param : instance()->params().list()) {
         all.append(py::dict(py::arg("NAME") = param.name, py::arg("VALUE") = to_python(param.value),
                             py::arg("DIRECTION") = static_cast<int>(param.dir),
                             py::arg("TYPE") = static_cast<int>(param.type)));
@@ -140,7 +141,7 @@ py::list info_params() {
 
 py::list info_signals() {
     py::list all;
-    for (const hal::SignalInfo &signal : instance()->signals()) {
+    for (const hal::SignalInfo &signal : instance()->signals().list()) {
         py::object driver = py::none();
         for (const hal::SignalPin &pin : signal.pins) {
             if (pin.dir == hal::Dir::OUT) {
@@ -195,10 +196,10 @@ void define_constants(py::module_ &module) {
 void define_value_functions(py::module_ &module) {
     module.def("get_value", &get_value, "get_value(name): of a pin, parameter or signal.");
     module.def(
-        "get_p", [](const std::string &name) { return value_or_throw(instance()->get(name)); },
+        "get_p", [](const std::string &name) { return value_or_throw(instance()->values().get(name)); },
         "get_p(name): of a pin or parameter.");
     module.def(
-        "get_s", [](const std::string &name) { return value_or_throw(instance()->get_signal(name)); },
+        "get_s", [](const std::string &name) { return value_or_throw(instance()->signals().get(name)); },
         "get_s(name): of a signal.");
     module.def("set_p", &set_pin_or_param, "set_p(name, value): a pin or parameter, as setp does.");
     module.def("set_s", &set_signal, "set_s(name, value): a signal without writer, as sets does.");
@@ -216,18 +217,19 @@ void define_functions(py::module_ &module) {
         "is_initialized", [] { return live_components() > 0; }, "True while this program has a component.");
     module.def("get_realtime_type", [] { return static_cast<int>(rtapi_get_realtime_type()); });
     module.def("component_exists",
-               [](const std::string &name) { return instance()->component(name).has_value(); });
+               [](const std::string &name) { return instance()->components().find(name).has_value(); });
     module.def("component_is_ready", [](const std::string &name) {
-        const auto found = instance()->component(name);
+        const auto found = instance()->components().find(name);
         return found && found->isReady;
     });
     module.def("new_sig", [](const std::string &name, int type) {
-        return succeeded(instance()->new_signal(name, type_of(type)));
+        return succeeded(instance()->signals().create(name, type_of(type)));
     });
     module.def("connect", [](const std::string &pin, const std::string &signal) {
-        return succeeded(instance()->link(pin, signal));
+        return succeeded(instance()->signals().link(pin, signal));
     });
-    module.def("disconnect", [](const std::string &pin) { return succeeded(instance()->unlink(pin)); });
+    module.def("disconnect",
+               [](const std::string &pin) { return succeeded(instance()->signals().unlink(pin)); });
     module.def("pin_has_writer", &pin_has_writer);
     module.def("get_msg_level", [] { return rtapi_get_msg_level(); });
     module.def("set_msg_level", [](int level) {
@@ -236,7 +238,7 @@ void define_functions(py::module_ &module) {
         }
     });
     module.def(
-        "is_rt_now", [] { return instance()->isRealtime(); },
+        "is_rt_now", [] { return instance()->host_status().isRealtime(); },
         "True when the threads have realtime priority.");
 }
 

@@ -25,10 +25,10 @@ HalHandle instance() {
     if (process().joined != nullptr) {
         return process().joined;
     }
-    if (hal::Hal *own = hal::current()) {
-        return {own, [](hal::Hal *) {}};
+    if (hal::Instance *own = hal::current()) {
+        return {own, [](hal::Instance *) {}};
     }
-    auto attached = hal::Hal::attach(hal::default_instance());
+    auto attached = hal::Instance::attach(hal::default_instance());
     if (!attached) {
         PyErr_SetString(PyExc_RuntimeError, attached.error().str().c_str());
         throw py::error_already_set();

@@ -8,12 +8,12 @@
 #include <memory>
 #include <string>
 
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::python {
 
 /// Keeps the instance in memory while it is in use; null deleter when the process owns it otherwise.
-using HalHandle = std::shared_ptr<hal::Hal>;
+using HalHandle = std::shared_ptr<hal::Instance>;
 
 /// The instance of this process: the one that it hosts or has joined, else the one that $MILLWRIGHT_INSTANCE
 /// names is joined. Throws RuntimeError when no realtime process keeps it.

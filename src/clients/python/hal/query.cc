@@ -47,7 +47,7 @@ py::dict dict_of(const hal::CompInfo &comp) {
                     py::arg("pid") = comp.pid, py::arg("args") = text_or_none(comp.insmod_args));
 }
 
-py::dict dict_of(const hal::FunctInfo &funct) {
+py::dict dict_of(const hal::FunctionInfo &funct) {
     return py::dict(py::arg("name") = funct.name, py::arg("comp") = funct.owner,
                     py::arg("comp_id") = funct.owner_id, py::arg("users") = funct.users,
                     py::arg("reentrant") = funct.reentrant);
@@ -74,22 +74,22 @@ py::list list_of(const std::vector<Info> &infos) {
 void define_query(py::module_ &module) {
     py::module_ query = module.def_submodule("_query", "What is in HAL now, as lists of dicts.");
     query.def(
-        "pins", [](const std::string &glob) { return list_of(instance()->pins(glob)); },
+        "pins", [](const std::string &glob) { return list_of(instance()->pins().list(glob)); },
         py::arg("glob") = "*");
     query.def(
-        "params", [](const std::string &glob) { return list_of(instance()->params(glob)); },
+        "params", [](const std::string &glob) { return list_of(instance()->params().list(glob)); },
         py::arg("glob") = "*");
     query.def(
-        "signals", [](const std::string &glob) { return list_of(instance()->signals(glob)); },
+        "signals", [](const std::string &glob) { return list_of(instance()->signals().list(glob)); },
         py::arg("glob") = "*");
     query.def(
-        "comps", [](const std::string &glob) { return list_of(instance()->components(glob)); },
+        "comps", [](const std::string &glob) { return list_of(instance()->components().list(glob)); },
         py::arg("glob") = "*");
     query.def(
-        "functs", [](const std::string &glob) { return list_of(instance()->functs(glob)); },
+        "functs", [](const std::string &glob) { return list_of(instance()->functions().list(glob)); },
         py::arg("glob") = "*");
     query.def(
-        "threads", [](const std::string &glob) { return list_of(instance()->threads(glob)); },
+        "threads", [](const std::string &glob) { return list_of(instance()->threads().list(glob)); },
         py::arg("glob") = "*");
 }
 

@@ -111,7 +111,7 @@ class Stream {
 struct SharedBlock {
     SharedBlock(const std::shared_ptr<Component> &owner, int block_key, std::size_t bytes)
         : hal(owner->hal()), key(block_key), size(bytes) {
-        const auto block = hal->shared_block(key, size);
+        const auto block = hal->memory().shared_block(key, size);
         if (!block) {
             throw_hal_error(block.error().str());
         }

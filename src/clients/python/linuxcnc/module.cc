@@ -3,7 +3,7 @@
 #include "clients/python/linuxcnc/module.hh"
 
 #include "clients/python/linuxcnc/view_geometry.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace py = pybind11;
 

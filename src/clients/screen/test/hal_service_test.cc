@@ -28,7 +28,7 @@ class HalDeskTest : public testing::Test {
     class Borrowed final : public hal::Host {
       public:
         explicit Borrowed(hal::Host &host) : host_(host) {}
-        hal::Hal &hal() noexcept override { return host_.hal(); }
+        hal::Instance &hal() noexcept override { return host_.hal(); }
         Result<> load_realtime(const std::string &name, const std::vector<std::string> &args) override {
             return host_.load_realtime(name, args);
         }
@@ -67,11 +67,11 @@ TEST_F(HalDeskTest, ListsWhatThereIs) {
 }
 
 TEST_F(HalDeskTest, TellsWhichInputsOfMotionHaveASource) {
-    hal::Hal &hal = bench.hal();
-    const auto motion = hal.new_component("motion");
+    hal::Instance &hal = bench.hal();
+    const auto motion = hal.components().create("motion");
     ASSERT_TRUE(motion.has_value());
     const auto add = [&](const char *name, hal::Type type) {
-        ASSERT_TRUE(hal.new_pin(name, type, hal::Dir::IN, *motion).has_value()) << name;
+        ASSERT_TRUE(hal.pins().create(name, type, hal::Dir::IN, *motion).has_value()) << name;
     };
     add("motion.probe-input", hal::Type::BIT);
     for (const char *spindle : {"0", "1"}) {
@@ -157,7 +157,7 @@ TEST_F(HalDeskTest, RecordsAroundATrigger) {
     EXPECT_EQ(record["times_s"][10], 0.0);
     EXPECT_EQ(desk.scope("DELETE", "").status, 200);
     EXPECT_EQ(state(), "CLOSED");
-    EXPECT_EQ(bench.hal().threads()[0].functions.size(), 1U);  // siggen alone
+    EXPECT_EQ(bench.hal().threads().list()[0].functions.size(), 1U);  // siggen alone
 }
 
 TEST_F(HalDeskTest, ARecordThatWaitsIsTriggeredByHandOrReplaced) {

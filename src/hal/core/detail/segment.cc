@@ -19,7 +19,12 @@ std::uint32_t hash_of(std::string_view name) noexcept {
 
 }  // namespace
 
-Segment::Segment(runtime::SharedMemory memory) noexcept : memory_(std::move(memory)), data_(memory_.data()) {}
+Segment::Segment(runtime::SharedMemory memory, bool isShared) noexcept
+    : memory_(std::move(memory)), data_(memory_.data()), isShared_(isShared) {}
+
+bool Segment::hasHost() const noexcept {
+    return !isShared_ || runtime::isAlive(memory_.owner());
+}
 
 void Segment::initialise(bool is_virtual) noexcept {
     auto *fresh = new (data_) Header{};

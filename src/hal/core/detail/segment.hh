@@ -13,7 +13,8 @@
 #include <string_view>
 
 #include "base/result.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/components.hh"
+#include "hal/core/value.hh"
 #include "runtime/shared_memory.hh"
 
 namespace mw::hal::detail {
@@ -149,16 +150,6 @@ struct BlockRecord : Record {
     Offset memory;
 };
 
-/// The queue of a port signal, followed by `size` bytes. Positions are 0 to size - 1; one byte stays free.
-struct PortQueue {
-    std::uint32_t size;
-    // Released by its writer after the bytes are in place, acquired by the reader before it copies them.
-    // realtime
-    std::atomic<std::uint32_t> in;
-    // Released by the reader after its copy, acquired by the writer before it fills the bytes again.
-    std::atomic<std::uint32_t> out;
-};
-
 /// A component that was removed because its process died.
 struct DeathRecord {
     std::array<char, NAME_LENGTH + 1> name;
@@ -221,14 +212,15 @@ inline constexpr runtime::SharedLayout LAYOUT{ABI_VERSION, layout_hash()};
 class Segment {
   public:
     Segment() = default;
-    explicit Segment(runtime::SharedMemory memory) noexcept;
+    Segment(runtime::SharedMemory memory, bool isShared) noexcept;
     /// Initialises the header; once, by the creator.
     void initialise(bool is_virtual) noexcept;
 
     Header &header() const noexcept { return *static_cast<Header *>(data_); }
     char *data() const noexcept { return static_cast<char *>(data_); }
     std::uint64_t base() const noexcept { return reinterpret_cast<std::uint64_t>(data_); }
-    const runtime::SharedMemory &memory() const noexcept { return memory_; }
+    /// False when the process that created a shared segment has ended.
+    bool hasHost() const noexcept;
 
     /// Waits for the lock; repairs changes that a dead holder left incomplete.
     void lock() noexcept;
@@ -282,6 +274,19 @@ class Segment {
 
     runtime::SharedMemory memory_;
     void *data_ = nullptr;
+    bool isShared_ = false;
+};
+
+/// Locks a segment during its lifetime. Reading needs the lock too.
+class Guard {
+  public:
+    explicit Guard(Segment &segment) noexcept : segment_(segment) { segment_.lock(); }
+    ~Guard() { segment_.unlock(); }
+    Guard(const Guard &) = delete;
+    Guard &operator=(const Guard &) = delete;
+
+  private:
+    Segment &segment_;
 };
 
 }  // namespace mw::hal::detail

@@ -13,11 +13,11 @@ TEST(Loader, RunsACComponentFromASharedObject) {
     ASSERT_EQ(machine.load("threads2"), "ok");
     ASSERT_EQ(machine.load("counter", {"start=5", "steps=2,3", "names=a,b"}), "ok");
     EXPECT_EQ(machine.value("a.count"), Value::of_s32(5));
-    ASSERT_TRUE(machine.hal().add_function("a.update", "fast"));
-    ASSERT_TRUE(machine.hal().add_function("b.update", "slow"));
+    ASSERT_TRUE(machine.hal().threads().add_function("a.update", "fast"));
+    ASSERT_TRUE(machine.hal().threads().add_function("b.update", "slow"));
     machine.clock.run_until(10'000'000);
     EXPECT_EQ(machine.value("a.count"), Value::of_s32(5)) << "threads are not started";
-    ASSERT_TRUE(machine.hal().start_threads());
+    ASSERT_TRUE(machine.hal().threads().start());
     machine.clock.run_until(20'000'000);
     EXPECT_EQ(machine.value("a.count"), Value::of_s32(25));
     EXPECT_EQ(machine.value("b.count"), Value::of_s32(14)) << "at 12, 16 and 20 ms";
@@ -39,12 +39,12 @@ TEST(Loader, SetsModuleParametersAndNamesTheKnownOnes) {
     EXPECT_NE(machine.load("nothing").find("there is no module 'nothing.so'"), std::string::npos);
     EXPECT_NE(machine.load("hm2_pci").find("there is no driver of this board yet"), std::string::npos);
     EXPECT_NE(machine.load("countr").find("did you mean 'counter'?"), std::string::npos);
-    EXPECT_TRUE(machine.hal().components().empty());
+    EXPECT_TRUE(machine.hal().components().list().empty());
     EXPECT_EQ(machine.load("counter", {"config=any, thing=2", "names="}), "ok");
-    EXPECT_EQ(machine.hal().component("counter")->insmod_args, "config=\"any, thing=2\" names=")
+    EXPECT_EQ(machine.hal().components().find("counter")->insmod_args, "config=\"any, thing=2\" names=")
         << "as a HAL file has it";
-    EXPECT_TRUE(machine.hal().component("counter")->isReady);
-    EXPECT_EQ(machine.hal().component("counter")->type, CompType::REALTIME);
+    EXPECT_TRUE(machine.hal().components().find("counter")->isReady);
+    EXPECT_EQ(machine.hal().components().find("counter")->type, CompType::REALTIME);
 }
 
 TEST(Loader, AModuleThatFailsLeavesNothing) {
@@ -53,9 +53,9 @@ TEST(Loader, AModuleThatFailsLeavesNothing) {
               "module 'counter': counter: start=-1 is below 0: Invalid argument (-22)");
     EXPECT_EQ(machine.messages.all(), "counter: start=-1 is below 0\n");
     EXPECT_NE(machine.load("threads2", {"leak=1"}).find("No such device"), std::string::npos);
-    EXPECT_TRUE(machine.hal().components().empty());
-    EXPECT_TRUE(machine.hal().threads().empty());
-    EXPECT_TRUE(machine.hal().pins().empty());
+    EXPECT_TRUE(machine.hal().components().list().empty());
+    EXPECT_TRUE(machine.hal().threads().list().empty());
+    EXPECT_TRUE(machine.hal().pins().list().empty());
     EXPECT_FALSE(machine.clock.step());
     EXPECT_EQ(machine.load("counter"), "ok");
 }
@@ -64,14 +64,14 @@ TEST(Loader, UnloadingTakesFunctionsOutOfThreads) {
     TestMachine machine;
     ASSERT_EQ(machine.load("threads2"), "ok");
     ASSERT_EQ(machine.load("counter"), "ok");
-    ASSERT_TRUE(machine.hal().add_function("counter.0.update", "fast"));
-    ASSERT_TRUE(machine.hal().start_threads());
+    ASSERT_TRUE(machine.hal().threads().add_function("counter.0.update", "fast"));
+    ASSERT_TRUE(machine.hal().threads().start());
     machine.clock.run_until(3'000'000);
     ASSERT_EQ(text_of(machine.host->unload_realtime("counter")), "ok");
     machine.clock.run_until(6'000'000);
-    EXPECT_TRUE(machine.hal().threads()[0].functions.empty());
-    EXPECT_TRUE(machine.hal().functs().empty());
-    EXPECT_TRUE(machine.hal().pins("counter*").empty());
+    EXPECT_TRUE(machine.hal().threads().list()[0].functions.empty());
+    EXPECT_TRUE(machine.hal().functions().list().empty());
+    EXPECT_TRUE(machine.hal().pins().list("counter*").empty());
     ASSERT_EQ(machine.load("counter"), "ok") << "and loads again";
 }
 
@@ -98,7 +98,7 @@ TEST(Loader, TwoInstancesInOneProcessShareNoStatics) {
         EXPECT_EQ(loads(), 1);
     }
     EXPECT_EQ(one.host->loader().find_symbol("printf"), nullptr);
-    ASSERT_TRUE(one.hal().set("counter.0.scale", "3"));
+    ASSERT_TRUE(one.hal().values().set("counter.0.scale", "3"));
     EXPECT_EQ(two.value("counter.0.scale"), Value::of_float(1));
 }
 
@@ -110,13 +110,13 @@ TEST(Loader, SdkComponentHasItsPinsParametersAndFunctions) {
     EXPECT_NE(machine.load("sdk_sum", {"count=-0x1"}).find("count=-1"), std::string::npos);
     EXPECT_NE(machine.load("sdk_sum", {"count=1", "names=a"}).find("not both"), std::string::npos);
     ASSERT_EQ(machine.load("sdk_sum", {"count=2"}), "ok");
-    ASSERT_TRUE(machine.hal().add_function("sdk-sum.1", "fast"));
-    ASSERT_TRUE(machine.hal().set("sdk-sum.1.in0", "1.5"));
-    ASSERT_TRUE(machine.hal().set("sdk-sum.1.in1", "2"));
-    ASSERT_TRUE(machine.hal().set("sdk-sum.1.gain", "2"));
+    ASSERT_TRUE(machine.hal().threads().add_function("sdk-sum.1", "fast"));
+    ASSERT_TRUE(machine.hal().values().set("sdk-sum.1.in0", "1.5"));
+    ASSERT_TRUE(machine.hal().values().set("sdk-sum.1.in1", "2"));
+    ASSERT_TRUE(machine.hal().values().set("sdk-sum.1.gain", "2"));
     EXPECT_EQ(machine.value("sdk-sum.1.clear"), Value::of_bit(true));
-    ASSERT_TRUE(machine.hal().net("total", {"sdk-sum.1.out", "sdk-sum.0.in0"}));
-    ASSERT_TRUE(machine.hal().start_threads());
+    ASSERT_TRUE(machine.hal().signals().net("total", {"sdk-sum.1.out", "sdk-sum.0.in0"}));
+    ASSERT_TRUE(machine.hal().threads().start());
     machine.clock.step();
     EXPECT_EQ(machine.value("sdk-sum.0.in0"), Value::of_float(7));
     EXPECT_EQ(machine.value("sdk-sum.1.runs"), Value::of_s32(1));
@@ -127,7 +127,7 @@ TEST(Loader, OverlongNamesAreErrorsNeverCut) {
     const std::string name(120, 'n');
     EXPECT_EQ(machine.load("sdk_sum", {"names=" + name}).find("ok"), std::string::npos)
         << "NAME.tmax-increased would be too long";
-    EXPECT_TRUE(machine.hal().pins().empty());
+    EXPECT_TRUE(machine.hal().pins().list().empty());
     EXPECT_EQ(machine.load("sdk_sum", {"names=" + std::string(107, 'n')}), "ok");
 }
 

@@ -35,7 +35,7 @@ struct TestMachine {
     std::unique_ptr<LocalHost> host;
 
     explicit TestMachine(const std::string &name = "test") {
-        HalOptions options;
+        InstanceOptions options;
         options.name = name;
         options.scheduler = &clock;
         options.log = &messages.log;
@@ -44,12 +44,14 @@ struct TestMachine {
             host = std::move(*made);
         }
     }
-    Hal &hal() { return host->hal(); }
+    Instance &hal() { return host->hal(); }
     std::string load(const std::string &name, const std::vector<std::string> &args = {}) {
         auto done = host->load_realtime(name, args);
         return done ? "ok" : done.error().str();
     }
-    Value value(const std::string &name) { return host->hal().get(name).value_or(Value::of_s64(-999)); }
+    Value value(const std::string &name) {
+        return host->hal().values().get(name).value_or(Value::of_s64(-999));
+    }
 };
 
 /// "ok", or the error's text.

@@ -23,13 +23,13 @@ TEST(RealtimeCode, ThreadsRunWithoutTheHeap) {
     ASSERT_EQ(machine.load("threads2"), "ok");
     ASSERT_EQ(machine.load("counter"), "ok");
     ASSERT_EQ(machine.load("sdk_sum", {"count=4"}), "ok");
-    Hal &hal = machine.hal();
-    ASSERT_TRUE(hal.add_init_function("counter.0.update", "fast"));
-    ASSERT_TRUE(hal.add_function("counter.1.update", "slow"));
+    Instance &hal = machine.hal();
+    ASSERT_TRUE(hal.threads().add_init_function("counter.0.update", "fast"));
+    ASSERT_TRUE(hal.threads().add_function("counter.1.update", "slow"));
     for (int i = 0; i < 4; ++i) {
-        ASSERT_TRUE(hal.add_function("sdk-sum." + std::to_string(i), "fast"));
+        ASSERT_TRUE(hal.threads().add_function("sdk-sum." + std::to_string(i), "fast"));
     }
-    ASSERT_TRUE(hal.start_threads());
+    ASSERT_TRUE(hal.threads().start());
     mw::testing::AllocationGuard guard;
     machine.clock.run_until(1'000'000'000);
     EXPECT_EQ(guard.calls(), 0U);
@@ -56,15 +56,15 @@ struct Talker {
 
 TEST(RealtimeCode, StreamsTimeAndFormattingWorkWithoutTheHeap) {
     TestMachine machine;
-    Hal &hal = machine.hal();
+    Instance &hal = machine.hal();
     const UseInstance use(&hal);
-    const int comp = *hal.new_component("talker", CompType::REALTIME);
+    const int comp = *hal.components().create("talker", CompType::REALTIME);
     Talker talker;
     ASSERT_EQ(hal_stream_create(&talker.stream, comp, 77, 11, "fk"), 0);
-    ASSERT_TRUE(hal.new_funct("talk", &Talker::run, &talker, comp));
-    ASSERT_TRUE(hal.new_thread("t", 1'000'000));
-    ASSERT_TRUE(hal.add_function("talk", "t"));
-    ASSERT_TRUE(hal.start_threads());
+    ASSERT_TRUE(hal.functions().create("talk", {&Talker::run, &talker}, comp));
+    ASSERT_TRUE(hal.threads().create("t", 1'000'000));
+    ASSERT_TRUE(hal.threads().add_function("talk", "t"));
+    ASSERT_TRUE(hal.threads().start());
     {
         mw::testing::AllocationGuard guard;
         machine.clock.run_until(12'000'000);
@@ -73,7 +73,7 @@ TEST(RealtimeCode, StreamsTimeAndFormattingWorkWithoutTheHeap) {
     EXPECT_EQ(talker.runs, 12);
     EXPECT_STREQ(talker.text, "12 2.5 three");
     hal_stream_t reader{};
-    const int other = *hal.new_component("reader");
+    const int other = *hal.components().create("reader");
     EXPECT_EQ(hal_stream_attach(&reader, other, 77, "ff"), -EINVAL);
     EXPECT_EQ(hal_stream_attach(&reader, other, 78, nullptr), -EINVAL) << "as in LinuxCNC";
     ASSERT_EQ(hal_stream_attach(&reader, other, 77, "FK"), 0);
@@ -132,7 +132,7 @@ TEST(CApi, ReferencesReadAndWritePins) {
     EXPECT_EQ(hal_get_si32_clamped(refs->wide), RTAPI_INT32_MAX);
     EXPECT_EQ(machine.value("refs.wide"), Value::of_s64(1LL << 40));
     EXPECT_EQ(machine.value("refs.param"), Value::of_u64(9));
-    EXPECT_EQ(machine.hal().pin("refs.wide")->type, Type::S64);
+    EXPECT_EQ(machine.hal().pins().find("refs.wide")->type, Type::S64);
     hal_type_t type = HAL_TYPE_UNSPECIFIED;
     hal_data_u *data = nullptr;
     bool connected = true;
@@ -152,7 +152,7 @@ TEST(CApi, SharedBlocksAreOnePerKeyAndZeroedAnew) {
     void *memory = nullptr;
     ASSERT_EQ(rtapi_shmem_getptr(id, &memory), 0);
     *static_cast<int *>(memory) = 7;
-    EXPECT_EQ(*machine.hal().shared_block(5, 50), memory);
+    EXPECT_EQ(*machine.hal().memory().shared_block(5, 50), memory);
     EXPECT_EQ(rtapi_shmem_new(5, 2, 200), -EINVAL);
     EXPECT_EQ(rtapi_shmem_delete(id, 1), 0);
     EXPECT_EQ(rtapi_shmem_delete(id, 2), 0);
@@ -170,12 +170,12 @@ TEST(CApi, PortsCarryBytesInOrderAllOrNone) {
     ASSERT_EQ(hal_pin_port_new("ports.out", HAL_OUT, &pins[0], comp), 0);
     ASSERT_EQ(hal_pin_port_new("ports.in", HAL_IN, &pins[1], comp), 0);
     EXPECT_FALSE(hal_port_write(pins[0], "x", 1)) << "not linked";
-    ASSERT_EQ(text_of(machine.hal().net("bytes", {"ports.out", "ports.in"})), "ok");
+    ASSERT_EQ(text_of(machine.hal().signals().net("bytes", {"ports.out", "ports.in"})), "ok");
     EXPECT_EQ(hal_port_writable(pins[0]), 0U) << "no size yet";
-    EXPECT_FALSE(machine.hal().set_signal("bytes", "1"));
-    EXPECT_FALSE(machine.hal().set_signal("bytes", "65537"));
-    ASSERT_EQ(text_of(machine.hal().set_signal("bytes", "8")), "ok");
-    EXPECT_FALSE(machine.hal().set_signal("bytes", "16"));
+    EXPECT_FALSE(machine.hal().signals().set("bytes", "1"));
+    EXPECT_FALSE(machine.hal().signals().set("bytes", "65537"));
+    ASSERT_EQ(text_of(machine.hal().signals().set("bytes", "8")), "ok");
+    EXPECT_FALSE(machine.hal().signals().set("bytes", "16"));
     EXPECT_EQ(hal_port_buffer_size(pins[1]), 8U);
     mw::testing::AllocationGuard guard;
     std::uint8_t wrote = 0;
@@ -201,7 +201,7 @@ TEST(CApi, PortsCarryBytesInOrderAllOrNone) {
     ASSERT_TRUE(hal_port_write(pins[0], "abc", 3));
     hal_port_clear(pins[1]);
     EXPECT_EQ(hal_port_readable(pins[1]), 0U);
-    ASSERT_TRUE(machine.hal().unlink("ports.in"));
+    ASSERT_TRUE(machine.hal().signals().unlink("ports.in"));
     EXPECT_EQ(hal_port_buffer_size(pins[1]), 0U);
 }
 

@@ -15,7 +15,8 @@
 
 #include <gtest/gtest.h>
 
-#include "hal/core/detail/impl.hh"
+#include "hal/core/detail/records.hh"
+#include "hal/core/instance.hh"
 #include "hal/host/host_client.hh"
 #include "tests/support/lateness_probe.hh"
 
@@ -117,27 +118,28 @@ TEST_F(HostTest, RunsModulesInARealtimeProcessOfItsOwn) {
     EXPECT_NE(text_of(client->load_realtime("counter", {})).find("loaded already"), std::string::npos);
     EXPECT_NE(text_of(client->load_realtime("sdk_sum", {"x=1"})).find("no parameter 'x'"), std::string::npos);
     EXPECT_EQ(*client->modules(), (std::vector<std::string>{"threads2", "counter"}));
-    Hal &hal = client->hal();
-    ASSERT_EQ(text_of(hal.add_function("counter.0.update", "fast")), "ok");
-    ASSERT_EQ(text_of(hal.start_threads()), "ok");
-    EXPECT_TRUE(isSoon([&] { return hal.get("counter.0.count")->as_s32() > 10; }));
-    EXPECT_TRUE(isSoon([&] { return hal.get("threads2.plans")->as_u64() > 10; }));
-    EXPECT_TRUE(isSoon([&] { return hal.get("counter.0.update.tmax")->as_s32() > 0; }))
+    Instance &hal = client->hal();
+    ASSERT_EQ(text_of(hal.threads().add_function("counter.0.update", "fast")), "ok");
+    ASSERT_EQ(text_of(hal.threads().start()), "ok");
+    EXPECT_TRUE(isSoon([&] { return hal.values().get("counter.0.count")->as_s32() > 10; }));
+    EXPECT_TRUE(isSoon([&] { return hal.values().get("threads2.plans")->as_u64() > 10; }));
+    EXPECT_TRUE(isSoon([&] { return hal.values().get("counter.0.update.tmax")->as_s32() > 0; }))
         << "times are measured";
-    ASSERT_EQ(text_of(hal.remove_function("counter.0.update", "fast")), "ok");
-    const auto count = *hal.get("counter.0.count");
-    const auto beat = hal.get("fast.threadbeat")->as_s64();
-    EXPECT_TRUE(isSoon([&] { return hal.get("fast.threadbeat")->as_s64() > beat + 3; }));
-    EXPECT_EQ(*hal.get("counter.0.count"), count) << "it no longer runs once remove_function has returned";
+    ASSERT_EQ(text_of(hal.threads().remove_function("counter.0.update", "fast")), "ok");
+    const auto count = *hal.values().get("counter.0.count");
+    const auto beat = hal.values().get("fast.threadbeat")->as_s64();
+    EXPECT_TRUE(isSoon([&] { return hal.values().get("fast.threadbeat")->as_s64() > beat + 3; }));
+    EXPECT_EQ(*hal.values().get("counter.0.count"), count)
+        << "it no longer runs once remove_function has returned";
     EXPECT_EQ(text_of(client->unload_realtime("counter")), "ok");
-    EXPECT_TRUE(hal.pins("counter*").empty());
-    EXPECT_TRUE(isSoon([&] { return hal.threads("fast")[0].max_latency_ns > 0; }))
+    EXPECT_TRUE(hal.pins().list("counter*").empty());
+    EXPECT_TRUE(isSoon([&] { return hal.threads().list("fast")[0].max_latency_ns > 0; }))
         << "told by the realtime process";
-    EXPECT_EQ(hal.isRealtime(), hal.realtime_missing().empty());
-    EXPECT_FALSE(hal.new_thread("x", 1000000)) << "only in the realtime process";
+    EXPECT_EQ(hal.host_status().isRealtime(), hal.host_status().realtime_missing().empty());
+    EXPECT_FALSE(hal.threads().create("x", 1000000)) << "only in the realtime process";
     EXPECT_EQ(text_of(client->shut_down()), "ok");
     EXPECT_FALSE(isHostAlive(instance));
-    EXPECT_FALSE(Hal::attach(instance));
+    EXPECT_FALSE(Instance::attach(instance));
 }
 
 TEST_F(HostTest, OneInstanceHasOneRealtimeProcess) {
@@ -155,11 +157,11 @@ TEST_F(HostTest, ReplacesWhatADeadRealtimeProcessLeft) {
     ASSERT_NE(client, nullptr);
     ::kill(client->pid(), SIGKILL);
     ASSERT_TRUE(isSoon([&] { return !isHostAlive(instance); }));
-    EXPECT_FALSE(Hal::attach(instance));
+    EXPECT_FALSE(Instance::attach(instance));
     EXPECT_NE(text_of(client->load_realtime("counter", {})).find("was killed"), std::string::npos);
     auto next = start();
     ASSERT_NE(next, nullptr);
-    EXPECT_TRUE(next->hal().components().empty());
+    EXPECT_TRUE(next->hal().components().list().empty());
 }
 
 TEST_F(HostTest, BrakesAndEndsWhenTheControllingProcessDies) {
@@ -167,26 +169,26 @@ TEST_F(HostTest, BrakesAndEndsWhenTheControllingProcessDies) {
     ASSERT_NE(client, nullptr);
     ASSERT_EQ(text_of(client->load_realtime("threads2", {})), "ok");
     ASSERT_EQ(text_of(client->load_realtime("watcher", {"cycles=100"})), "ok");
-    Hal &hal = client->hal();
-    ASSERT_EQ(text_of(hal.add_function("watcher", "fast")), "ok");
-    ASSERT_EQ(text_of(hal.start_threads()), "ok");
+    Instance &hal = client->hal();
+    ASSERT_EQ(text_of(hal.threads().add_function("watcher", "fast")), "ok");
+    ASSERT_EQ(text_of(hal.threads().start()), "ok");
     const pid_t controller = run_in_child([&] {
         auto mine = HostClient::connect(instance);
         return mine && mine->release()->control();
     });
     ASSERT_NE(controller, 0);
     EXPECT_FALSE(client->control()) << "another one controls";
-    EXPECT_EQ(hal.get("watcher.gone")->str(), "FALSE");
+    EXPECT_EQ(hal.values().get("watcher.gone")->str(), "FALSE");
     testing::LatenessProbe probe;
     const auto killed = std::chrono::steady_clock::now();
     kill_now(controller);
-    EXPECT_TRUE(isSoon([&] { return hal.get("watcher.gone")->as_bit(); }));
+    EXPECT_TRUE(isSoon([&] { return hal.values().get("watcher.gone")->as_bit(); }));
     const auto noticed = std::chrono::steady_clock::now() - killed;
     if (probe.isCalm()) {
         EXPECT_LT(std::chrono::duration_cast<std::chrono::milliseconds>(noticed).count(), 50);
     }
     const volatile auto *left =
-        static_cast<volatile std::int32_t *>(*hal.address_of("watcher.left", Type::S32));
+        static_cast<volatile std::int32_t *>(*hal.values().address_of("watcher.left", Type::S32));
     EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); }));
     EXPECT_EQ(*left, 0) << "it braked to the end";
 }
@@ -196,14 +198,14 @@ TEST_F(HostTest, BrakesAndEndsWhenTheControllingProcessDies) {
 TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands) {
     auto client = start();
     ASSERT_NE(client, nullptr);
-    Hal &hal = client->hal();
+    Instance &hal = client->hal();
     const pid_t controller = run_in_child([&] {
         auto mine = HostClient::connect(instance);
         HostClient *own = mine.value().release();
-        const int id = *own->hal().new_component("chain");
-        void **enable = *own->hal().new_pin("chain.enable", Type::BIT, Dir::OUT, id);
+        const int id = *own->hal().components().create("chain");
+        void **enable = *own->hal().pins().create("chain.enable", Type::BIT, Dir::OUT, id);
         **reinterpret_cast<bool **>(enable) = true;
-        const bool ready = own->hal().set_ready(id).has_value() && own->control().has_value();
+        const bool ready = own->hal().components().set_ready(id).has_value() && own->control().has_value();
         std::thread([] {
             ::usleep(50'000);
             (void)::syscall(SYS_tgkill, ::getpid(), ::getpid(), SIGUSR1);  // ends its pause
@@ -222,9 +224,9 @@ TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands) {
         std::getline(file, text);
         return text.find(") Z") != std::string::npos;
     }));
-    EXPECT_TRUE(hal.reap_dead_components().empty()) << "nor does any other program";
+    EXPECT_TRUE(hal.processes().reap_dead().empty()) << "nor does any other program";
     std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the realtime process checks every 50 ms
-    const auto enable = hal.get("chain.enable");
+    const auto enable = hal.values().get("chain.enable");
     EXPECT_TRUE(enable.has_value() && enable->as_bit());
     kill_now(controller);
     EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); }));
@@ -233,38 +235,39 @@ TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands) {
 TEST_F(HostTest, OutputsOfADeadProgramTakeTheirSafeValues) {
     auto client = start();
     ASSERT_NE(client, nullptr);
-    Hal &hal = client->hal();
-    const int comp = *hal.new_component("reader");
-    ASSERT_TRUE(hal.new_pin("reader.speed", Type::FLOAT, Dir::IN, comp));
-    ASSERT_TRUE(hal.new_pin("reader.stop", Type::BIT, Dir::IN, comp));
+    Instance &hal = client->hal();
+    const int comp = *hal.components().create("reader");
+    ASSERT_TRUE(hal.pins().create("reader.speed", Type::FLOAT, Dir::IN, comp));
+    ASSERT_TRUE(hal.pins().create("reader.stop", Type::BIT, Dir::IN, comp));
     const pid_t program = run_in_child([&] {
-        auto mine = Hal::attach(instance);
-        Hal *own = mine.value().release();
-        const int id = *own->new_component("program");
-        void **speed = *own->new_pin("program.speed", Type::FLOAT, Dir::OUT, id);
-        own->new_pin("program.stop", Type::BIT, Dir::OUT, id).value();
+        auto mine = Instance::attach(instance);
+        Instance *own = mine.value().release();
+        const int id = *own->components().create("program");
+        void **speed = *own->pins().create("program.speed", Type::FLOAT, Dir::OUT, id);
+        own->pins().create("program.stop", Type::BIT, Dir::OUT, id).value();
         **reinterpret_cast<double **>(speed) = 3.5;
-        return own->set_safe_value("program.stop", Value::of_bit(true)) && own->set_ready(id);
+        return own->pins().set_safe_value("program.stop", Value::of_bit(true)) &&
+               own->components().set_ready(id);
     });
     ASSERT_NE(program, 0);
-    ASSERT_EQ(text_of(hal.net("speed", {"program.speed", "reader.speed"})), "ok");
-    ASSERT_EQ(text_of(hal.net("stop", {"program.stop", "reader.stop"})), "ok");
-    EXPECT_EQ(hal.get("reader.speed")->as_float(), 3.5);
+    ASSERT_EQ(text_of(hal.signals().net("speed", {"program.speed", "reader.speed"})), "ok");
+    ASSERT_EQ(text_of(hal.signals().net("stop", {"program.stop", "reader.stop"})), "ok");
+    EXPECT_EQ(hal.values().get("reader.speed")->as_float(), 3.5);
     kill_now(program);
-    EXPECT_TRUE(isSoon([&] { return !hal.component("program"); }));
-    EXPECT_EQ(hal.get("reader.speed")->as_float(), 0);
-    EXPECT_TRUE(hal.get("reader.stop")->as_bit());
-    EXPECT_TRUE(hal.pins("program*").empty());
+    EXPECT_TRUE(isSoon([&] { return !hal.components().find("program"); }));
+    EXPECT_EQ(hal.values().get("reader.speed")->as_float(), 0);
+    EXPECT_TRUE(hal.values().get("reader.stop")->as_bit());
+    EXPECT_TRUE(hal.pins().list("program*").empty());
 }
 
 TEST_F(HostTest, ADeathIsNoticedAtOnceAndNamed) {
     auto client = start();
     ASSERT_NE(client, nullptr);
-    Hal &hal = client->hal();
+    Instance &hal = client->hal();
     const auto add = [this](const char *name) {
         return run_in_child([this, name] {
-            Hal *own = Hal::attach(instance).value().release();
-            return own->set_ready(*own->new_component(name)).has_value();
+            Instance *own = Instance::attach(instance).value().release();
+            return own->components().set_ready(*own->components().create(name)).has_value();
         });
     };
     const pid_t victim = add("victim");
@@ -275,21 +278,21 @@ TEST_F(HostTest, ADeathIsNoticedAtOnceAndNamed) {
     testing::LatenessProbe probe;
     const auto killed = std::chrono::steady_clock::now();
     ::kill(victim, SIGKILL);
-    EXPECT_TRUE(isSoon([&] { return !hal.hasComponent("victim"); }));
+    EXPECT_TRUE(isSoon([&] { return !hal.components().has("victim"); }));
     const auto noticed = std::chrono::steady_clock::now() - killed;
     if (probe.isCalm()) {
         EXPECT_LT(std::chrono::duration_cast<std::chrono::milliseconds>(noticed).count(), 50);
     }
     ::waitpid(victim, nullptr, 0);
-    ASSERT_EQ(hal.deaths().size(), 1U);
-    EXPECT_EQ(hal.deaths()[0].name, "victim");
-    EXPECT_EQ(hal.deaths()[0].pid, victim);
-    ASSERT_TRUE(hal.expect_end(hal.component("dismissed")->id));
+    ASSERT_EQ(hal.processes().deaths().size(), 1U);
+    EXPECT_EQ(hal.processes().deaths()[0].name, "victim");
+    EXPECT_EQ(hal.processes().deaths()[0].pid, victim);
+    ASSERT_TRUE(hal.processes().expect_end(hal.components().find("dismissed")->id));
     kill_now(dismissed);
-    EXPECT_TRUE(isSoon([&] { return !hal.hasComponent("dismissed"); }));
-    EXPECT_EQ(hal.deaths().size(), 1U) << "it was asked to";
-    ASSERT_TRUE(hal.new_component("victim"));
-    EXPECT_TRUE(hal.deaths().empty()) << "it is back";
+    EXPECT_TRUE(isSoon([&] { return !hal.components().has("dismissed"); }));
+    EXPECT_EQ(hal.processes().deaths().size(), 1U) << "it was asked to";
+    ASSERT_TRUE(hal.components().create("victim"));
+    EXPECT_TRUE(hal.processes().deaths().empty()) << "it is back";
 }
 
 TEST_F(HostTest, EndsWithItsStarterFromTheFirstMomentOn) {
@@ -312,24 +315,26 @@ TEST_F(HostTest, TheLogLevelReachesTheRealtimeProcess) {
 TEST_F(HostTest, ALockHeldByAKilledProcessIsRecovered) {
     auto client = start();
     ASSERT_NE(client, nullptr);
-    Hal &hal = client->hal();
-    const int comp = *hal.new_component("mine");
-    void **slot = *hal.new_pin("mine.pin", Type::S32, Dir::OUT, comp);
-    ASSERT_TRUE(hal.net("s", {"mine.pin"}));
+    Instance &hal = client->hal();
+    const int comp = *hal.components().create("mine");
+    void **slot = *hal.pins().create("mine.pin", Type::S32, Dir::OUT, comp);
+    ASSERT_TRUE(hal.signals().net("s", {"mine.pin"}));
     for (int round = 0; round < 100; ++round) {
         const pid_t program = run_in_child([&] {
-            auto mine = Hal::attach(instance);
-            Hal *own = mine.value().release();
-            const int id = *own->new_component("holder");
-            own->new_pin("holder.pin", Type::S32, Dir::IN, id).value();
-            (void)own->link("holder.pin", "s");
-            detail::Segment &segment = own->impl().segment;
+            auto mine = Instance::attach(instance);
+            Instance *own = mine.value().release();
+            const int id = *own->components().create("holder");
+            own->pins().create("holder.pin", Type::S32, Dir::IN, id).value();
+            (void)own->signals().link("holder.pin", "s");
+            // Never destroyed: the kernel marks the lock in the memory of the killed process.
+            detail::Segment &segment = *new detail::Segment(
+                runtime::SharedMemory::attach(segment_name(instance), detail::LAYOUT).value(), true);
             segment.lock();
             // During the creation of a record, at different points.
             auto *pin = segment.make<detail::PinRecord>(detail::Kind::PIN, "holder.half");
             detail::Table &table = segment.table(detail::Kind::PIN);
             if (round % 3 > 0) {
-                pin->comp = segment.offset_of(own->impl().find_comp(id));
+                pin->comp = segment.offset_of(detail::find_comp(segment, id));
                 pin->type = Type::S32;
                 pin->dir = Dir::IN;
                 pin->next = table.first;
@@ -340,12 +345,12 @@ TEST_F(HostTest, ALockHeldByAKilledProcessIsRecovered) {
         });
         ASSERT_NE(program, 0);
         kill_now(program);
-        EXPECT_EQ(hal.pin("mine.pin")->signal, "s");
-        EXPECT_TRUE(isSoon([&] { return !hal.component("holder"); }));
-        EXPECT_EQ(hal.signal("s")->pins.size(), 1U);
-        EXPECT_FALSE(hal.pin("holder.half"));
+        EXPECT_EQ(hal.pins().find("mine.pin")->signal, "s");
+        EXPECT_TRUE(isSoon([&] { return !hal.components().find("holder"); }));
+        EXPECT_EQ(hal.signals().find("s")->pins.size(), 1U);
+        EXPECT_FALSE(hal.pins().find("holder.half"));
         **reinterpret_cast<std::int32_t **>(slot) = round;
-        EXPECT_EQ(hal.get_signal("s")->as_s32(), round);
+        EXPECT_EQ(hal.signals().get("s")->as_s32(), round);
     }
 }
 
@@ -354,16 +359,16 @@ TEST_F(HostTest, ThreadsAreChangedSafelyWhileTheyRun) {
     ASSERT_NE(client, nullptr);
     ASSERT_EQ(text_of(client->load_realtime("threads2", {"fast=100000"})), "ok");
     ASSERT_EQ(text_of(client->load_realtime("counter", {})), "ok");
-    Hal &hal = client->hal();
-    ASSERT_EQ(text_of(hal.start_threads()), "ok");
+    Instance &hal = client->hal();
+    ASSERT_EQ(text_of(hal.threads().start()), "ok");
     for (int round = 0; round < 200; ++round) {
-        ASSERT_EQ(text_of(hal.add_function("counter.0.update", "fast", 1)), "ok");
-        ASSERT_EQ(text_of(hal.add_function("counter.1.update", "slow", -1)), "ok");
-        ASSERT_EQ(text_of(hal.remove_function("counter.0.update", "fast")), "ok");
-        ASSERT_EQ(text_of(hal.remove_function("counter.1.update", "slow")), "ok");
+        ASSERT_EQ(text_of(hal.threads().add_function("counter.0.update", "fast", 1)), "ok");
+        ASSERT_EQ(text_of(hal.threads().add_function("counter.1.update", "slow", -1)), "ok");
+        ASSERT_EQ(text_of(hal.threads().remove_function("counter.0.update", "fast")), "ok");
+        ASSERT_EQ(text_of(hal.threads().remove_function("counter.1.update", "slow")), "ok");
     }
     for (int round = 0; round < 100; ++round) {
-        ASSERT_EQ(text_of(hal.add_function("counter.0.update", "fast", 1)), "ok");
+        ASSERT_EQ(text_of(hal.threads().add_function("counter.0.update", "fast", 1)), "ok");
         ASSERT_EQ(text_of(client->unload_realtime("counter")), "ok");
         ASSERT_EQ(text_of(client->load_realtime("counter", {})), "ok");
     }
@@ -374,7 +379,7 @@ TEST_F(HostTest, EndsCleanlyOnSigterm) {
     auto client = start();
     ASSERT_NE(client, nullptr);
     ASSERT_EQ(text_of(client->load_realtime("threads2", {})), "ok");
-    ASSERT_EQ(text_of(client->hal().start_threads()), "ok");
+    ASSERT_EQ(text_of(client->hal().threads().start()), "ok");
     ::kill(client->pid(), SIGTERM);
     EXPECT_TRUE(isSoon([&] { return !isHostAlive(instance); }));
     EXPECT_TRUE(isSoon([&] { return !fs::exists(folder / "millwright" / (instance + ".sock")); }));

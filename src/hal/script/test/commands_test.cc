@@ -183,13 +183,13 @@ constexpr Case BAD[] = {
 class Sandbox : public SessionTest {
   public:
     Sandbox() {
-        Hal &hal = host->hal();
-        const int id = *hal.new_component("tool", CompType::REALTIME);
+        Instance &hal = host->hal();
+        const int id = *hal.components().create("tool", CompType::REALTIME);
         for (const char *name : {"tool.read", "tool.write"}) {
-            EXPECT_TRUE(hal.new_funct(name, [](void *, long) {}, nullptr, id));
+            EXPECT_TRUE(hal.functions().create(name, {[](void *, long) {}}, id));
         }
-        EXPECT_TRUE(hal.set_ready(id));
-        EXPECT_TRUE(hal.new_thread("servo", 1000000));
+        EXPECT_TRUE(hal.components().set_ready(id));
+        EXPECT_TRUE(hal.threads().create("servo", 1000000));
     }
     void TestBody() override {}
     using SessionTest::last_result;

@@ -27,22 +27,22 @@ class TextOutput final : public Output {
 class SessionTest : public ::testing::Test {
   protected:
     SessionTest() {
-        HalOptions hal_options;
+        InstanceOptions hal_options;
         hal_options.name = "session-test";
         hal_options.scheduler = &clock;
         host = std::move(*LocalHost::create(hal_options));
         // Components of other folders are not built for this test: it has its own pins.
-        const int id = *host->hal().new_component("board");
+        const int id = *host->hal().components().create("board");
         for (const char *name : {"board.in0", "board.in1", "board.io"}) {
-            slots.push_back(*host->hal().new_pin(name, Type::BIT,
-                                                 name[6] == 'i' && name[7] == 'o' ? Dir::IO : Dir::IN, id));
+            slots.push_back(*host->hal().pins().create(
+                name, Type::BIT, name[6] == 'i' && name[7] == 'o' ? Dir::IO : Dir::IN, id));
         }
-        slots.push_back(*host->hal().new_pin("board.out", Type::BIT, Dir::OUT, id));
-        slots.push_back(*host->hal().new_pin("board.value", Type::FLOAT, Dir::IN, id));
-        slots.push_back(*host->hal().new_pin("board.word", Type::U32, Dir::IN, id));
-        gain = host->hal().allocate(8);
-        EXPECT_TRUE(host->hal().new_param("board.gain", Type::FLOAT, Dir::RW, gain, id));
-        EXPECT_TRUE(host->hal().set_ready(id));
+        slots.push_back(*host->hal().pins().create("board.out", Type::BIT, Dir::OUT, id));
+        slots.push_back(*host->hal().pins().create("board.value", Type::FLOAT, Dir::IN, id));
+        slots.push_back(*host->hal().pins().create("board.word", Type::U32, Dir::IN, id));
+        gain = host->hal().memory().allocate(8);
+        EXPECT_TRUE(host->hal().params().create("board.gain", Type::FLOAT, Dir::RW, gain, id));
+        EXPECT_TRUE(host->hal().components().set_ready(id));
     }
 
     /// Runs lines; returns the results, or the errors if there are any.

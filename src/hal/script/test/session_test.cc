@@ -25,11 +25,11 @@ TEST_F(SessionTest, SetsAndReadsValues) {
 TEST_F(SessionTest, FirstFailureEndsAFileUnlessItKeepsGoing) {
     EXPECT_EQ(run("newsig a bit\nbogus\nnewsig b bit").find("test.hal:2:1: unknown command 'bogus'"), 0U);
     EXPECT_FALSE(last_result.has_value());
-    EXPECT_FALSE(host->hal().signal("b").has_value());
+    EXPECT_FALSE(host->hal().signals().find("b").has_value());
     options.keepsGoing = true;
     run("bogus\nnewsig b bit\nbogus2");
     EXPECT_FALSE(last_result.has_value());
-    EXPECT_TRUE(host->hal().signal("b").has_value());
+    EXPECT_TRUE(host->hal().signals().find("b").has_value());
 }
 
 TEST_F(SessionTest, ErrorsNamePlaceExpectationAndNearestName) {
@@ -127,8 +127,8 @@ TEST_F(SessionTest, SourceFindsFilesBesideTheCallerAndInTheLibrary) {
     std::ofstream(folder / "bad.hal") << "\nnewsig part bit\n";
     options.library = {(folder / "lib").string()};
     EXPECT_EQ(run("source " + (folder / "outer.hal").string()), "");
-    EXPECT_TRUE(host->hal().signal("inner").has_value());
-    EXPECT_TRUE(host->hal().signal("part").has_value());
+    EXPECT_TRUE(host->hal().signals().find("inner").has_value());
+    EXPECT_TRUE(host->hal().signals().find("part").has_value());
     const std::string errors = run("source " + (folder / "bad.hal").string());
     EXPECT_EQ(errors.find((folder / "bad.hal").string() + ":2:8: "), 0U) << errors;
     EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << "told once: " << errors;
@@ -149,7 +149,8 @@ TEST_F(SessionTest, LeftOutProgramsGetPlaceholders) {
                   "net early board.in1\nunlinkp panel.other\ngetp panel.lamp"),
               "FALSE\n");
     EXPECT_EQ(started, "known");
-    EXPECT_EQ(host->hal().pin("panel.button")->signal, "early") << "linked once the signal's type was known";
+    EXPECT_EQ(host->hal().pins().find("panel.button")->signal, "early")
+        << "linked once the signal's type was known";
     ASSERT_EQ(left_out.size(), 1U);
     EXPECT_EQ(left_out[0],
               "not started: pyvcp -c panel file.xml; without effect: panel.button, panel.lamp, panel.level");

@@ -28,8 +28,8 @@ class TextOutput final : public Output {
 /// Records the modules to be loaded.
 class RecordingHost final : public Host {
   public:
-    explicit RecordingHost(const HalOptions &options) : hal_(std::move(*Hal::create(options))) {}
-    Hal &hal() noexcept override { return *hal_; }
+    explicit RecordingHost(const InstanceOptions &options) : hal_(std::move(*Instance::create(options))) {}
+    Instance &hal() noexcept override { return *hal_; }
     Result<> load_realtime(const std::string &name, const std::vector<std::string> &args) override {
         std::string line = name;
         for (const std::string &arg : args) {
@@ -46,7 +46,7 @@ class RecordingHost final : public Host {
     std::vector<std::string> lines;
 
   private:
-    std::unique_ptr<Hal> hal_;
+    std::unique_ptr<Instance> hal_;
 };
 
 class TwoPassTest : public ::testing::Test {
@@ -57,7 +57,7 @@ class TwoPassTest : public ::testing::Test {
     /// Runs files a.hal, b.hal... with these texts; returns the output, errors last.
     std::string run(const std::vector<std::string> &texts, const std::string &keywords = "on",
                     TwoPassReport report = TwoPassReport::NOTHING) {
-        HalOptions hal_options;
+        InstanceOptions hal_options;
         hal_options.name = "two-pass-test";
         hal_options.scheduler = &clock;
         host = std::make_unique<RecordingHost>(hal_options);
@@ -121,7 +121,7 @@ TEST_F(TwoPassTest, EverythingElseRunsInTheSecondPassOnce) {
         << "the answers of list are printed in the first pass too, as files written for LinuxCNC expect";
     EXPECT_TRUE(last_result);
     EXPECT_NE(run({"newsig one bit\nbogus\n"}).find("unknown command 'bogus'"), std::string::npos);
-    EXPECT_FALSE(host->hal().hasSignal("one")) << "found before anything was done";
+    EXPECT_FALSE(host->hal().signals().has("one")) << "found before anything was done";
 }
 
 TEST_F(TwoPassTest, ExcludedFilesRunAsAWholeAtTheirPlace) {
@@ -130,7 +130,7 @@ TEST_F(TwoPassTest, ExcludedFilesRunAsAWholeAtTheirPlace) {
             "on", TwoPassReport::FILES);
     EXPECT_EQ(host->lines, (std::vector<std::string>{"first", "inner", "last"}));
     EXPECT_TRUE(last_result) << "its failures stop nothing";
-    EXPECT_TRUE(host->hal().hasSignal("x"));
+    EXPECT_TRUE(host->hal().signals().has("x"));
     const std::string at = folder.string();
     EXPECT_EQ(text, "twopass:invoked with <> options\ntwopass:found " + at + "/a.hal\ntwopass:found " + at +
                         "/b.hal\ntwopass:Sourcing " + at +

@@ -18,9 +18,9 @@ class CanonicalDevices : public ::testing::Test {
     void SetUp() override {
         ASSERT_EQ(machine.load("threads2"), "ok");
         ASSERT_EQ(machine.load("loop_board"), "ok");
-        ASSERT_TRUE(machine.hal().add_function("loop-board.0.read", "fast"));
-        ASSERT_TRUE(machine.hal().add_function("loop-board.0.write", "fast"));
-        ASSERT_TRUE(machine.hal().start_threads());
+        ASSERT_TRUE(machine.hal().threads().add_function("loop-board.0.read", "fast"));
+        ASSERT_TRUE(machine.hal().threads().add_function("loop-board.0.write", "fast"));
+        ASSERT_TRUE(machine.hal().threads().start());
         run();
     }
     void run(int steps = 1) {
@@ -29,7 +29,7 @@ class CanonicalDevices : public ::testing::Test {
         }
     }
     void set(const std::string &name, const std::string &value) {
-        ASSERT_EQ(text_of(machine.hal().set("loop-board.0." + name, value)), "ok") << name;
+        ASSERT_EQ(text_of(machine.hal().values().set("loop-board.0." + name, value)), "ok") << name;
     }
     double get(const std::string &name) { return machine.value("loop-board.0." + name).as_number(); }
 
@@ -68,10 +68,10 @@ TEST_F(CanonicalDevices, HaveTheirPinsAndParameters) {
     };
     std::map<std::string, Kind> found;
     const std::string prefix = "loop-board.0.";
-    for (const PinInfo &pin : machine.hal().pins(prefix + "*-00.*")) {
+    for (const PinInfo &pin : machine.hal().pins().list(prefix + "*-00.*")) {
         found[pin.name.substr(prefix.size())] = {pin.type, pin.dir};
     }
-    for (const ParamInfo &param : machine.hal().params(prefix + "*-00.*")) {
+    for (const ParamInfo &param : machine.hal().params().list(prefix + "*-00.*")) {
         found[param.name.substr(prefix.size())] = {param.type, param.dir};
     }
     EXPECT_EQ(found, expected);
@@ -105,8 +105,8 @@ TEST_F(CanonicalDevices, AnalogOutputIsZeroUntilEnabledAndStaysWithinItsLimits) 
     set("adcout-00.value", "30");
     run(4);
     EXPECT_NEAR(get("adcin-00.value"), 10.0, bit) << "the hardware has no more";
-    ASSERT_TRUE(machine.hal().set("loop-board.0.adcout-00.value",
-                                  Value::of_float(std::numeric_limits<double>::quiet_NaN())));
+    ASSERT_TRUE(machine.hal().values().set("loop-board.0.adcout-00.value",
+                                           Value::of_float(std::numeric_limits<double>::quiet_NaN())));
     run(4);
     EXPECT_NEAR(get("adcin-00.value"), 0.0, bit);
     set("adcin-00.offset", "1.5");
@@ -154,7 +154,7 @@ TEST_F(CanonicalDevices, NeitherAllocateNorWait) {
 TEST(CanonicalNames, OverlongNameEndsTheLoad) {
     TestMachine machine;
     EXPECT_NE(machine.load("loop_board", {"names=" + std::string(100, 'n')}), "ok");
-    EXPECT_TRUE(machine.hal().pins().empty());
+    EXPECT_TRUE(machine.hal().pins().list().empty());
 }
 
 }  // namespace

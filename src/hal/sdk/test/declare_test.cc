@@ -26,7 +26,7 @@ TEST_F(DeclareNames, KeepsThePrefixAfterTheTextHasChanged) {
     std::memset(prefix, 'x', sizeof prefix - 1);
     declare.pin(*pin, "in");
     EXPECT_EQ(declare.status(), 0);
-    EXPECT_EQ(machine.hal().pins("board.0.in").size(), 1U);
+    EXPECT_EQ(machine.hal().pins().list("board.0.in").size(), 1U);
 }
 
 TEST_F(DeclareNames, RefusesAPrefixThatIsTooLongEvenWithoutAName) {

@@ -32,17 +32,17 @@ class TclTest : public ::testing::Test {
   protected:
     TclTest() {
         fs::create_directories(folder);
-        HalOptions hal_options;
+        InstanceOptions hal_options;
         hal_options.name = "tcl-test";
         hal_options.scheduler = &clock;
         host = std::move(*LocalHost::create(hal_options));
-        Hal &hal = host->hal();
-        const int id = *hal.new_component("board");
+        Instance &hal = host->hal();
+        const int id = *hal.components().create("board");
         for (const char *name : {"board.in0", "board.in1"}) {
-            EXPECT_TRUE(hal.new_pin(name, Type::FLOAT, Dir::IN, id));
+            EXPECT_TRUE(hal.pins().create(name, Type::FLOAT, Dir::IN, id));
         }
-        EXPECT_TRUE(hal.new_pin("board.out", Type::FLOAT, Dir::OUT, id));
-        EXPECT_TRUE(hal.set_ready(id));
+        EXPECT_TRUE(hal.pins().create("board.out", Type::FLOAT, Dir::OUT, id));
+        EXPECT_TRUE(hal.components().set_ready(id));
         ini_file = ini::IniFile::parse("[JOINT_0]\nRADIUS = 2\nA = 1\nA = two words\n", "test.ini", sink);
         options.ini = &ini;
     }
@@ -110,8 +110,8 @@ TEST_F(TclTest, IniEntriesAreArraysOfLists) {
                   "setp board.in1 \"[llength $::JOINT_0(A)] + [lindex $argv 1]\"\n",
                   {"x", "40"}),
               "");
-    EXPECT_EQ(host->hal().get("board.in0")->as_float(), 12);
-    EXPECT_EQ(host->hal().get("board.in1")->as_float(), 42);
+    EXPECT_EQ(host->hal().values().get("board.in0")->as_float(), 12);
+    EXPECT_EQ(host->hal().values().get("board.in1")->as_float(), 42);
 }
 
 TEST_F(TclTest, ErrorsNameTheLineAndCanBeCaught) {
@@ -121,7 +121,7 @@ TEST_F(TclTest, ErrorsNameTheLineAndCanBeCaught) {
               (folder / "test.tcl").string() +
                   ":3: parameter or pin 'bord.in0' does not exist (did you mean 'board.in0'?)\n");
     EXPECT_FALSE(last_result);
-    EXPECT_EQ(host->hal().get("board.in1")->as_float(), 0) << "a script stops at its first error";
+    EXPECT_EQ(host->hal().values().get("board.in1")->as_float(), 0) << "a script stops at its first error";
     EXPECT_NE(run("proc p {} {\n net\n}\np\n").find("in procedure \"p\" line 2"), std::string::npos);
 }
 
@@ -129,15 +129,15 @@ TEST_F(TclTest, FilesOfBothKindsSourceEachOther) {
     const std::string hal_file = write("part.hal", "newsig from-hal bit\nsource other.tcl\n");
     write("other.tcl", "newsig from-tcl bit\n");
     EXPECT_EQ(run("source " + hal_file + "\n"), "");
-    EXPECT_TRUE(host->hal().hasSignal("from-hal"));
-    EXPECT_TRUE(host->hal().hasSignal("from-tcl"));
+    EXPECT_TRUE(host->hal().signals().has("from-hal"));
+    EXPECT_TRUE(host->hal().signals().has("from-tcl"));
 }
 
 TEST_F(TclTest, ExitEndsTheScriptOnly) {
     EXPECT_EQ(run("newsig before bit\nexit\nnewsig after bit\n"), "");
     EXPECT_TRUE(last_result);
-    EXPECT_TRUE(host->hal().hasSignal("before"));
-    EXPECT_FALSE(host->hal().hasSignal("after"));
+    EXPECT_TRUE(host->hal().signals().has("before"));
+    EXPECT_FALSE(host->hal().signals().has("after"));
     (void)run("exit 3\n");
     EXPECT_FALSE(last_result);
 }
@@ -154,7 +154,7 @@ TEST_F(TclTest, ThePackageLinuxcncReadsIniFilesAndKnowsPlaces) {
                   "if {![info exists linuxcnc::TCL_DIR] || [package provide Linuxcnc] != 1.0} {error no}\n"),
               "");
     EXPECT_EQ(run(source + "hal newsig from-package bit\n"), "");
-    EXPECT_TRUE(host->hal().hasSignal("from-package"));
+    EXPECT_TRUE(host->hal().signals().has("from-package"));
 }
 
 TEST_F(TclTest, AScriptForTwoPassesSaysSoInOne) {

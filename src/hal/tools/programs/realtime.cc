@@ -44,7 +44,7 @@ int status() {
 int verify() {
     auto host = HostClient::start("verify-" + std::to_string(::getpid()));
     Result<> done = host ? (*host)->control() : std::unexpected(host.error());
-    const std::string missing = done ? (*host)->hal().realtime_missing() : "";
+    const std::string missing = done ? (*host)->hal().host_status().realtime_missing() : "";
     const Result<> ended = host ? (*host)->shut_down() : Result<>{};
     done = done ? ended : done;
     if (!done) {

@@ -27,8 +27,8 @@ bool isAlive(int pid) {
 }
 
 /// Adds the function to a thread unless one has it; returns the thread to which it was added.
-Result<std::string> enter_thread(Hal &hal, const std::string &wanted) {
-    const std::vector<ThreadInfo> threads = hal.threads();
+Result<std::string> enter_thread(Instance &hal, const std::string &wanted) {
+    const std::vector<ThreadInfo> threads = hal.threads().list();
     std::string chosen = wanted;
     for (const ThreadInfo &thread : threads) {
         if (std::find(thread.functions.begin(), thread.functions.end(), FUNCTION) != thread.functions.end()) {
@@ -46,7 +46,7 @@ Result<std::string> enter_thread(Hal &hal, const std::string &wanted) {
         return fail(threads.empty() ? "there is no thread to record in" : "there are several threads", {},
                     threads.empty() ? "loadrt threads, or start a machine" : "name one with --thread");
     }
-    const Result<> added = hal.add_function(FUNCTION, chosen);
+    const Result<> added = hal.threads().add_function(FUNCTION, chosen);
     if (!added) {
         return std::unexpected(added.error());
     }
@@ -73,7 +73,7 @@ Result<Capture> Capture::open(Host &host, const std::string &thread) {
             return std::unexpected(loaded.error());
         }
     }
-    const auto memory = host.hal().shared_block(CAPTURE_KEY, sizeof(CaptureBlock));
+    const auto memory = host.hal().memory().shared_block(CAPTURE_KEY, sizeof(CaptureBlock));
     if (!memory) {
         return std::unexpected(memory.error());
     }
@@ -110,17 +110,17 @@ Capture::~Capture() {
     cancel();
     if (!added_to_.empty()) {
         // If the thread no longer exists, neither does the function in it.
-        (void)hal_->remove_function(FUNCTION, added_to_);
+        (void)hal_->threads().remove_function(FUNCTION, added_to_);
     }
     block_->client.store(0);
 }
 
 Result<CaptureChannel> Capture::channel_of(const std::string &name) const {
-    for (const auto &value : {hal_->get(name), hal_->get_signal(name)}) {
+    for (const auto &value : {hal_->values().get(name), hal_->signals().get(name)}) {
         if (!value) {
             continue;
         }
-        const auto address = hal_->address_of(name, value->type);
+        const auto address = hal_->values().address_of(name, value->type);
         if (!address) {
             return std::unexpected(address.error());
         }
@@ -129,10 +129,10 @@ Result<CaptureChannel> Capture::channel_of(const std::string &name) const {
                               place - reinterpret_cast<const volatile char *>(block_)};
     }
     std::vector<std::string> known;
-    for (const PinInfo &pin : hal_->pins()) {
+    for (const PinInfo &pin : hal_->pins().list()) {
         known.push_back(pin.name);
     }
-    for (const SignalInfo &signal : hal_->signals()) {
+    for (const SignalInfo &signal : hal_->signals().list()) {
         known.push_back(signal.name);
     }
     const std::string near = nearest_name(name, known);

@@ -54,10 +54,10 @@ class Capture {
     Result<CaptureRecord> record() const;
 
   private:
-    Capture(Hal &hal, CaptureBlock &block) : hal_(&hal), block_(&block) {}
+    Capture(Instance &hal, CaptureBlock &block) : hal_(&hal), block_(&block) {}
     Result<CaptureChannel> channel_of(const std::string &name) const;
 
-    Hal *hal_;
+    Instance *hal_;
     CaptureBlock *block_;
     std::string added_to_;  ///< thread to which capture.sample was added
     std::vector<std::string> names_;

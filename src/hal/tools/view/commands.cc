@@ -65,7 +65,7 @@ void take_period(CommandLine &line, const std::string &names, const std::string 
 
 // ---- watch
 
-Result<> watch_lines(Hal &hal, const Words &names, double every_s, long count,
+Result<> watch_lines(Instance &hal, const Words &names, double every_s, long count,
                      volatile std::sig_atomic_t &stop) {
     // Values are printed below their names.
     const auto add_column = [](std::string &line, const std::string &text, const std::string &name) {
@@ -82,9 +82,9 @@ Result<> watch_lines(Hal &hal, const Words &names, double every_s, long count,
         }
         std::string line;
         for (const std::string &name : names) {
-            auto value = hal.get(name);
+            auto value = hal.values().get(name);
             if (!value) {
-                value = hal.get_signal(name);
+                value = hal.signals().get(name);
             }
             if (!value) {
                 return fail(fmt::format("there is no pin, parameter or signal '{}'", name));
@@ -189,7 +189,7 @@ struct CaptureCommand {
 };
 
 /// Waits for the end of the record; after the timeout it is forced or abandoned.
-Result<> wait_for_record(const Hal &hal, Capture &capture, const CaptureCommand &command,
+Result<> wait_for_record(Instance &hal, Capture &capture, const CaptureCommand &command,
                          volatile std::sig_atomic_t &stop) {
     constexpr double STEP_S = 0.01;
     double waited_s = 0;
@@ -201,7 +201,7 @@ Result<> wait_for_record(const Hal &hal, Capture &capture, const CaptureCommand 
         if (capture.state() == CaptureState::REFUSED) {
             return fail("the module capture rejected the settings");
         }
-        if (waited_s > command.timeout_s && !hal.isRunning()) {
+        if (waited_s > command.timeout_s && !hal.threads().isRunning()) {
             return fail("the threads are stopped", {}, "halcmd start starts them");
         }
         if (waited_s > command.timeout_s && capture.state() != CaptureState::TRIGGERED) {

@@ -83,7 +83,7 @@ Result<> write_csv(const std::vector<LatencyFigures> &figures, const std::string
 }
 
 /// Shows the table each second until the time is over or a signal arrives.
-Result<std::vector<LatencyFigures>> watch(Hal &hal, const LatencyOptions &options,
+Result<std::vector<LatencyFigures>> watch(Instance &hal, const LatencyOptions &options,
                                           volatile std::sig_atomic_t &stop) {
     const double step_s = options.seconds > 0 ? std::min(1.0, options.seconds) : 1.0;
     bool shown = false;
@@ -157,13 +157,13 @@ Result<> start_latency(Host &host, const std::vector<LatencyThread> &threads) {
         done = host.load_realtime("latency", {fmt::format("count={}", threads.size()), "bin=" + bins});
     }
     for (std::size_t i = 0; done && i < threads.size(); ++i) {
-        done = host.hal().add_function(fmt::format("latency.{}", i), threads[i].name);
+        done = host.hal().threads().add_function(fmt::format("latency.{}", i), threads[i].name);
     }
-    return done ? host.hal().start_threads() : done;
+    return done ? host.hal().threads().start() : done;
 }
 
-Result<std::vector<LatencyFigures>> read_latency(Hal &hal, const std::vector<LatencyThread> &threads) {
-    const auto memory = hal.shared_block(LATENCY_KEY, sizeof(LatencyBlock));
+Result<std::vector<LatencyFigures>> read_latency(Instance &hal, const std::vector<LatencyThread> &threads) {
+    const auto memory = hal.memory().shared_block(LATENCY_KEY, sizeof(LatencyBlock));
     if (!memory) {
         return std::unexpected(memory.error());
     }
@@ -244,7 +244,7 @@ Result<> run_latency(const LatencyOptions &options, volatile std::sig_atomic_t &
     }
     Result<> done = (*host)->control();
     if (done) {
-        const std::string missing = (*host)->hal().realtime_missing();
+        const std::string missing = (*host)->hal().host_status().realtime_missing();
         if (!missing.empty()) {
             language::tell("no realtime priority: " + missing);
         }

@@ -40,7 +40,7 @@ Result<std::int64_t> parse_period(const std::string &text);
 /// Creates the threads (shortest period first, 1 to 3) in `host`, loads the module and starts them.
 Result<> start_latency(Host &host, const std::vector<LatencyThread> &threads);
 /// Current counts.
-Result<std::vector<LatencyFigures>> read_latency(Hal &hal, const std::vector<LatencyThread> &threads);
+Result<std::vector<LatencyFigures>> read_latency(Instance &hal, const std::vector<LatencyThread> &threads);
 
 /// A line per thread under a headline.
 std::string latency_table(const std::vector<LatencyFigures> &figures);

@@ -159,17 +159,17 @@ Result<> run_dot(const std::string &text, const std::string &format, const std::
 
 }  // namespace
 
-std::string netlist_dot(const Hal &hal, const NetlistOptions &options) {
+std::string netlist_dot(Instance &hal, const NetlistOptions &options) {
     std::map<std::string, Box> boxes;
     std::map<std::string, std::string> instance_by_pin;
     std::map<std::string, bool> isWanted;
-    for (const PinInfo &pin : hal.pins(options.glob == "*" ? "*" : options.glob + ".*")) {
+    for (const PinInfo &pin : hal.pins().list(options.glob == "*" ? "*" : options.glob + ".*")) {
         isWanted[instance_of(pin)] = true;
         if (!pin.signal.empty()) {
             isWanted["\n" + pin.signal] = true;
         }
     }
-    for (const PinInfo &pin : hal.pins()) {
+    for (const PinInfo &pin : hal.pins().list()) {
         const std::string instance = instance_of(pin);
         const bool shown = isWanted.contains(instance) ? !pin.signal.empty() || options.showsUnlinked
                                                        : isWanted.contains("\n" + pin.signal);
@@ -185,13 +185,13 @@ std::string netlist_dot(const Hal &hal, const NetlistOptions &options) {
     for (const auto &[name, box] : boxes) {
         text += box_text(name, box);
     }
-    for (const SignalInfo &signal : hal.signals()) {
+    for (const SignalInfo &signal : hal.signals().list()) {
         text += signal_text(signal, instance_by_pin, options.showsValues);
     }
     return text + "}\n";
 }
 
-Result<> write_netlist(const Hal &hal, const NetlistOptions &options, const std::string &path) {
+Result<> write_netlist(Instance &hal, const NetlistOptions &options, const std::string &path) {
     const std::size_t dot = path.rfind('.');
     const std::string ending = dot == std::string::npos ? "" : path.substr(dot + 1);
     const std::string text = netlist_dot(hal, options);

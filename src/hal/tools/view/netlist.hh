@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/result.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::hal::view {
 
@@ -18,10 +18,10 @@ struct NetlistOptions {
 /// A graph in the Graphviz language: a box for each instance (the pins' names up to their last dot) with its
 /// linked pins, inputs left, outputs right; an edge for each reader from the signal's writer, or from a node
 /// of the signal when it has none or several.
-std::string netlist_dot(const Hal &hal, const NetlistOptions &options);
+std::string netlist_dot(Instance &hal, const NetlistOptions &options);
 
 /// Writes `path` by its extension: .dot is the text itself; .svg, .png and .pdf are made by Graphviz' program
 /// dot.
-Result<> write_netlist(const Hal &hal, const NetlistOptions &options, const std::string &path);
+Result<> write_netlist(Instance &hal, const NetlistOptions &options, const std::string &path);
 
 }  // namespace mw::hal::view

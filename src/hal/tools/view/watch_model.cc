@@ -122,10 +122,10 @@ void WatchModel::add_tree(const std::vector<WatchRow> &leaves) {
 
 void WatchModel::show_pins() {
     std::vector<WatchRow> leaves;
-    for (const PinInfo &pin : hal_->pins()) {
+    for (const PinInfo &pin : hal_->pins().list()) {
         leaves.push_back(row_of(pin));
     }
-    for (const ParamInfo &param : hal_->params()) {
+    for (const ParamInfo &param : hal_->params().list()) {
         leaves.push_back(row_of(param));
     }
     std::erase_if(leaves, [&](const WatchRow &row) { return !hasText(row, filter_); });
@@ -139,7 +139,7 @@ void WatchModel::show_pins() {
 }
 
 void WatchModel::show_signals() {
-    for (const SignalInfo &signal : hal_->signals()) {
+    for (const SignalInfo &signal : hal_->signals().list()) {
         WatchRow row = row_of(signal);
         if (hasText(row, filter_)) {
             rows_.push_back(std::move(row));
@@ -148,7 +148,7 @@ void WatchModel::show_signals() {
 }
 
 void WatchModel::show_threads() {
-    for (const ThreadInfo &thread : hal_->threads()) {
+    for (const ThreadInfo &thread : hal_->threads().list()) {
         rows_.push_back(
             {0, thread.name, thread.name, true, true, "thread", micros(thread.period_ns),
              fmt::format("time {}  tmax {}  overruns {}  latency {}", micros(thread.time_ns),
@@ -160,8 +160,8 @@ void WatchModel::show_threads() {
                          false,
                          false,
                          "function",
-                         number_text(hal_->get(function + ".time")),
-                         "tmax " + number_text(hal_->get(function + ".tmax"))};
+                         number_text(hal_->values().get(function + ".time")),
+                         "tmax " + number_text(hal_->values().get(function + ".tmax"))};
             if (hasText(row, filter_)) {
                 rows_.push_back(std::move(row));
             }
@@ -171,11 +171,11 @@ void WatchModel::show_threads() {
 
 void WatchModel::show_watched() {
     for (const std::string &name : watched_) {
-        if (const auto pin = hal_->pin(name)) {
+        if (const auto pin = hal_->pins().find(name)) {
             rows_.push_back(row_of(*pin));
-        } else if (const auto param = hal_->param(name)) {
+        } else if (const auto param = hal_->params().find(name)) {
             rows_.push_back(row_of(*param));
-        } else if (const auto signal = hal_->signal(name)) {
+        } else if (const auto signal = hal_->signals().find(name)) {
             rows_.push_back(row_of(*signal));
         } else {
             rows_.push_back({0, name, name, false, false, "", "gone", ""});
@@ -282,8 +282,8 @@ void WatchModel::finish_text() {
 }
 
 Result<> WatchModel::assign(const std::string &name, const std::string &text) {
-    return hal_->get(name) ? hal_->set(name, std::string_view(text))
-                           : hal_->set_signal(name, std::string_view(text));
+    return hal_->values().get(name) ? hal_->values().set(name, std::string_view(text))
+                                    : hal_->signals().set(name, std::string_view(text));
 }
 
 std::string WatchModel::status() const {

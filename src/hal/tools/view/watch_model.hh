@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/result.hh"
-#include "hal/core/hal.hh"
+#include "hal/core/instance.hh"
 
 namespace mw::hal::view {
 
@@ -47,7 +47,7 @@ struct WatchRow {
 
 class WatchModel {
   public:
-    explicit WatchModel(Hal &hal) : hal_(&hal) {}
+    explicit WatchModel(Instance &hal) : hal_(&hal) {}
 
     /// Reads all values again.
     void refresh();
@@ -81,7 +81,7 @@ class WatchModel {
     void finish_text();
     Result<> assign(const std::string &name, const std::string &text);
 
-    Hal *hal_;
+    Instance *hal_;
     Page page_ = Page::PINS;
     std::vector<WatchRow> rows_;
     std::size_t cursor_ = 0, top_ = 0, height_ = 20;

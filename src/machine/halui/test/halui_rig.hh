@@ -21,7 +21,7 @@ inline constexpr unsigned AXES = 0b101;  // X and Z
 class HaluiRig : public ::testing::Test {
   protected:
     HaluiRig() {
-        hal::HalOptions options;
+        hal::InstanceOptions options;
         options.scheduler = &clock;
         auto made = hal::LocalHost::create(options);
         EXPECT_TRUE(made.has_value());
@@ -37,15 +37,15 @@ class HaluiRig : public ::testing::Test {
         EXPECT_TRUE(halui.join(memory.segment()).has_value());
     }
     ~HaluiRig() override { halui.destroy(); }
-    hal::Hal &hal() { return host->hal(); }
+    hal::Instance &hal() { return host->hal(); }
     void set(const std::string &name, bool on) {
-        EXPECT_TRUE(hal().set("halui." + name, on ? "1" : "0").has_value()) << name;
+        EXPECT_TRUE(hal().values().set("halui." + name, on ? "1" : "0").has_value()) << name;
     }
     void set_value(const std::string &name, const std::string &value) {
-        EXPECT_TRUE(hal().set("halui." + name, value).has_value()) << name;
+        EXPECT_TRUE(hal().values().set("halui." + name, value).has_value()) << name;
     }
-    bool lamp(const std::string &name) { return hal().get("halui." + name)->as_bit(); }
-    double value(const std::string &name) { return hal().get("halui." + name)->as_number(); }
+    bool lamp(const std::string &name) { return hal().values().get("halui." + name)->as_bit(); }
+    double value(const std::string &name) { return hal().values().get("halui." + name)->as_number(); }
     /// Presses and releases a button; returns its command.
     std::string press(const std::string &name) {
         set(name, true);

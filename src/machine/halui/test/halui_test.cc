@@ -84,7 +84,7 @@ TEST_F(HaluiTest, LampsShowTheStatusOfTheLastCycle) {
         cycle();
         halui.step();
         std::string all;
-        for (const hal::PinInfo &pin : hal().pins("halui.*")) {
+        for (const hal::PinInfo &pin : hal().pins().list("halui.*")) {
             all += pin.dir == hal::Dir::OUT && pin.type == hal::Type::BIT && pin.value.as_bit()
                        ? pin.name.substr(6) + ' '
                        : "";
@@ -225,7 +225,7 @@ TEST_F(HaluiTest, EveryRowIsAPinAndEveryPinIsARow) {
         }
     }
     std::size_t found = 0;
-    for (const hal::PinInfo &pin : hal().pins("*")) {
+    for (const hal::PinInfo &pin : hal().pins().list("*")) {
         if (pin.owner != "halui") {
             continue;
         }

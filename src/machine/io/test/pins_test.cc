@@ -17,7 +17,7 @@ using testing::PinText;
 class IoPins : public ::testing::Test {
   protected:
     IoPins() {
-        hal::HalOptions options;
+        hal::InstanceOptions options;
         options.scheduler = &clock;
         auto made = hal::LocalHost::create(options);
         EXPECT_TRUE(made.has_value());
@@ -25,11 +25,11 @@ class IoPins : public ::testing::Test {
         EXPECT_TRUE(pins.create(hal()).has_value());
     }
     ~IoPins() override { pins.destroy(); }
-    hal::Hal &hal() { return host->hal(); }
+    hal::Instance &hal() { return host->hal(); }
     void set(const std::string &name, const std::string &value) {
-        EXPECT_TRUE(hal().set("iocontrol.0." + name, value).has_value()) << name;
+        EXPECT_TRUE(hal().values().set("iocontrol.0." + name, value).has_value()) << name;
     }
-    double value(const std::string &name) { return hal().get("iocontrol.0." + name)->as_number(); }
+    double value(const std::string &name) { return hal().values().get("iocontrol.0." + name)->as_number(); }
 
     runtime::VirtualScheduler clock;
     std::unique_ptr<hal::LocalHost> host;
@@ -110,7 +110,7 @@ TEST_F(IoPins, EveryRowIsAPinAndEveryPinIsARow) {
         EXPECT_TRUE(wanted.emplace(row.name, row).second) << row.name << " is in the table twice";
     }
     std::size_t found = 0;
-    for (const hal::PinInfo &pin : hal().pins("*")) {
+    for (const hal::PinInfo &pin : hal().pins().list("*")) {
         if (pin.owner != "iocontrol") {
             continue;
         }

@@ -178,16 +178,16 @@ TEST_F(Death, AComponentWhoseParentNeverAsksForItsStatusDelaysNoEnd) {
     const pid_t halrun =
         start({"halrun", file("a.hal", "loadusr -W user_component first\nloadusr -w sleep 60\n")});
     auto host = HostClient::connect(instance);
-    for (int i = 0; i < 2000 && (!host || !(*host)->hal().component("first")); ++i) {
+    for (int i = 0; i < 2000 && (!host || !(*host)->hal().components().find("first")); ++i) {
         usleep(5000);
         host = HostClient::connect(instance);
     }
     ASSERT_TRUE(host) << errors();
     const pid_t component = start({"user_component", "unreaped"});
-    for (int i = 0; i < 2000 && !(*host)->hal().component("unreaped"); ++i) {
+    for (int i = 0; i < 2000 && !(*host)->hal().components().find("unreaped"); ++i) {
         usleep(5000);
     }
-    ASSERT_TRUE((*host)->hal().component("unreaped")) << errors();
+    ASSERT_TRUE((*host)->hal().components().find("unreaped")) << errors();
     const auto begin = Clock::now();
     kill(halrun, SIGTERM);
     waitpid(halrun, nullptr, 0);

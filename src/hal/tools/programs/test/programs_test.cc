@@ -86,7 +86,7 @@ TEST_F(Programs, NothingSurvivesAKilledHalrun) {
     {
         const auto host = HostClient::connect(instance);
         ASSERT_TRUE(host);
-        program = (*host)->hal().component("user_component")->pid;
+        program = (*host)->hal().components().find("user_component")->pid;
     }
     kill(pid, SIGKILL);
     (void)wait(pid);

@@ -136,7 +136,7 @@ TEST(Capture, RefusesWhatCannotBe) {
 
 TEST(Capture, LeavesTheThreadAsItWas) {
     Bench bench(SIGGEN);
-    const auto functions = [&] { return bench.hal().threads()[0].functions; };
+    const auto functions = [&] { return bench.hal().threads().list()[0].functions; };
     const auto before = functions();
     {
         auto capture = Capture::open(*bench.host, "");

@@ -26,7 +26,7 @@ TEST(LatencySlot, CountsDeviationsFromThePeriod) {
 
 TEST(Latency, VirtualThreadsAreExact) {
     runtime::VirtualScheduler clock;
-    HalOptions options;
+    InstanceOptions options;
     options.name = "latency-test";
     options.scheduler = &clock;
     auto host = LocalHost::create(options);

@@ -31,14 +31,14 @@ bool isSoon(const std::function<bool()> &condition) {
 struct RealtimeTasks : ::testing::Test {
     Messages messages;
     runtime::RealtimeScheduler clock{messages.log, {.cpu = -2, .is_simulation = true}};
-    std::unique_ptr<Hal> hal;
+    std::unique_ptr<Instance> hal;
 
     RealtimeTasks() {
-        HalOptions options;
+        InstanceOptions options;
         options.name = "tasks";
         options.scheduler = &clock;
         options.log = &messages.log;
-        hal = std::move(*Hal::create(options));
+        hal = std::move(*Instance::create(options));
     }
 };
 
@@ -114,15 +114,15 @@ struct Follower {
 
 TEST_F(RealtimeTasks, AThreadFollowsAnotherClockByOnePercent) {
     constexpr long long PERIOD = 1'000'000;
-    const int comp = *hal->new_component("f", CompType::REALTIME);
+    const int comp = *hal->components().create("f", CompType::REALTIME);
     Follower follower;
-    ASSERT_TRUE(hal->new_funct("follow", &Follower::run, &follower, comp));
-    ASSERT_TRUE(hal->new_thread("t", PERIOD));
-    ASSERT_TRUE(hal->add_function("follow", "t"));
-    ASSERT_TRUE(hal->start_threads());
+    ASSERT_TRUE(hal->functions().create("follow", {&Follower::run, &follower}, comp));
+    ASSERT_TRUE(hal->threads().create("t", PERIOD));
+    ASSERT_TRUE(hal->threads().add_function("follow", "t"));
+    ASSERT_TRUE(hal->threads().start());
     EXPECT_TRUE(isSoon([&] { return follower.runs >= 20; }));
-    ASSERT_TRUE(hal->stop_threads());
-    ASSERT_TRUE(hal->delete_thread("t"));
+    ASSERT_TRUE(hal->threads().stop());
+    ASSERT_TRUE(hal->threads().remove("t"));
     EXPECT_EQ(follower.status, 0);
     const long long span = follower.reference - follower.first;
     const long long cycles = span / PERIOD;
