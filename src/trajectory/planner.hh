@@ -81,9 +81,8 @@ class Planner {
     TapVerdict check_tap(Sequence move) const noexcept {
         return plan::check_tap({path_.primitive(move), path_.move(move).request, conditions_});
     }
-    /// How fast spindles change their speed when they turn back: see SpindleReading.
-    void set_ramps(const std::array<std::array<double, 2>, MAX_SPINDLES> &ramps) noexcept {
-        conditions_.ramps = ramps;
+    void set_brakings(const std::array<SpindleBrakings, MAX_SPINDLES> &brakings) noexcept {
+        conditions_.brakings = brakings;
     }
     /// Seconds from a snapshot to the earliest start of a plan made with it.
     double latency_s() const noexcept { return static_cast<double>(settings_.latency) * settings_.period_s; }

@@ -12,6 +12,7 @@
 #include "motion/interface/status.hh"
 #include "trajectory/path/joint_map.hh"
 #include "trajectory/path/limits.hh"
+#include "trajectory/path/spindle_braking.hh"
 #include "trajectory/path_store.hh"
 
 namespace mw::motion {
@@ -53,7 +54,7 @@ struct PathView {
     std::array<double, MAX_SPINDLES> spindle_rps{}, spindle_revs{};
     std::uint32_t spindles_ready = 0;  ///< bit per spindle that is at speed or off
     std::uint32_t spindles_reversible = 0;
-    std::array<std::array<double, 2>, MAX_SPINDLES> spindle_ramps{};  ///< see trajectory::SpindleReading
+    std::array<trajectory::SpindleBrakings, MAX_SPINDLES> spindle_brakings{};
     bool isProbeClosed = false;
     std::uint32_t probe_trips = 0;  ///< counts probe moves that were tripped
     std::uint32_t steps = 0;        ///< counts StepOnce

@@ -138,7 +138,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     step_kinematics(in);
     for (int n = 0; n < config_.num_spindles; ++n) {
         executor_.set_spindle(n, spindles_[n].turns);
-        executor_.set_ramps(n, ramps_of(spindles_, n, settings_));
+        executor_.set_brakings(n, brakings_of(spindles_, n, settings_));
     }
     if (!power_.isEnabled) [[unlikely]] {
         executor_.step(cycle_);
@@ -159,7 +159,11 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     }
     output_joints();
     const trajectory::TapDemand &tap = executor_.output().tap;
-    const SpindleCycle cycle{place_.cmd[geometry::AXIS_X], {tap.spindle, tap.factor}, config_.period_s};
+    SpindleCycle cycle{place_.cmd[geometry::AXIS_X], {tap.spindle, tap.factor}, config_.period_s};
+    for (int n = 0; n < config_.num_spindles; ++n) {
+        const trajectory::SpindleTrack &track = executor_.spindle(n).track;
+        cycle.counted[static_cast<std::size_t>(n)] = {track.turns_per_s(), track.step()};
+    }
     for (std::uint32_t failed = motion::step(spindles_, in, settings_, cycle); failed != 0;
          failed &= failed - 1) {
         const int n = std::countr_zero(failed);

@@ -189,7 +189,7 @@ void Controller::publish_view(const Inputs &in, const geometry::Pose &programmed
         const auto i = static_cast<std::size_t>(n);
         v.spindle_rps[i] = spindles_[n].speed_rps;
         v.spindle_revs[i] = spindles_[n].turns;
-        v.spindle_ramps[i] = ramps_of(spindles_, n, settings_);
+        v.spindle_brakings[i] = brakings_of(spindles_, n, settings_);
         v.spindles_reversible |= isReversible(settings_, n) ? 1U << n : 0U;
         v.spindles_ready |= isReady(spindles_[n], in.spindle[i]) ? 1U << n : 0U;
     }

@@ -79,14 +79,16 @@ class Executor : private ExecutorState {
     /// The path begins at `pose`; only at rest and with nothing left of a path.
     [[gnu::cold]] void set_position(const Pose &pose) noexcept;
 
-    /// The angle [turns] of a spindle; call every cycle before `step`: the speed is told from it.
+    /// The angle [turns] of a spindle; call every cycle before `step`: it gives the speed.
     void set_spindle(int spindle, double turns) noexcept {
         FollowedSpindle &followed = spindles_[static_cast<std::size_t>(spindle)];
         followed.track.take(turns, period_);
     }
-    /// How fast a spindle changes its speed when it turns back: see SpindleReading::ramp.
-    void set_ramps(int spindle, const std::array<double, 2> &ramps) noexcept {
-        spindles_[static_cast<std::size_t>(spindle)].ramp = ramps;
+    const FollowedSpindle &spindle(int spindle) const noexcept {
+        return spindles_[static_cast<std::size_t>(spindle)];
+    }
+    void set_brakings(int spindle, const SpindleBrakings &brakings) noexcept {
+        spindles_[static_cast<std::size_t>(spindle)].brakings = brakings;
     }
 
     /// Advances to the end of `cycle`.

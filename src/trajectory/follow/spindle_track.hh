@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "trajectory/path/spindle_braking.hh"
+
 namespace mw::trajectory {
 
 /// A filter of constant acceleration with fading memory: what a change of the acceleration leaves decays with
@@ -63,19 +65,18 @@ struct SpindleReading {
     double turns = 0;
     double turns_per_s = 0;
     double turns_per_s2 = 0;
-    /// Change of speed with which it turns back when it is told to, from turning on with the counts and from
-    /// turning against them [turns/s^2]; 0: not known.
-    std::array<double, 2> ramp{};
+    SpindleBrakings brakings{};
     double step = SpindleTrack::JUMP;  ///< of its encoder [turns]
-    double ramp_at(double speed) const noexcept { return speed >= 0 ? ramp[0] : ramp[1]; }
+    /// Revolutions until standstill if it were commanded to reverse now; 0: not known.
+    double overrun() const noexcept { return braking_at(brakings, turns_per_s).overrun(turns_per_s); }
 };
 
 /// What the executor knows of a spindle.
 struct FollowedSpindle {
     SpindleTrack track;
-    std::array<double, 2> ramp{};
+    SpindleBrakings brakings{};
     SpindleReading reading() const noexcept {
-        return {track.turns(), track.turns_per_s(), track.turns_per_s2(), ramp, track.step()};
+        return {track.turns(), track.turns_per_s(), track.turns_per_s2(), brakings, track.step()};
     }
 };
 

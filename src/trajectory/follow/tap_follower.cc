@@ -8,15 +8,6 @@
 
 namespace mw::trajectory {
 
-namespace {
-
-/// Revolutions until a spindle of this speed is stopped.
-double overrun_of(double speed, double ramp) noexcept {
-    return ramp > 0 ? 0.5 * speed * speed / ramp : 0.0;
-}
-
-}  // namespace
-
 void TapFollower::begin(const TapTerms &terms, const SpindleReading &spindle, double dt) noexcept {
     *this = {};
     terms_ = terms;
@@ -35,9 +26,8 @@ void TapFollower::stop(const SpindleReading &spindle) noexcept {
         return;
     }
     const bool under_way = pursuit_.hasMet() && phase_ != TapPhase::HOME && !lost_;
-    const double ramp = spindle.ramp_at(spindle.turns_per_s);
-    run_out_ = ramp > 0 ? TapTuning::RUN_OUT * overrun_of(spindle.turns_per_s, ramp) + 1.0
-                        : TapTuning::UNKNOWN_RUN_OUT;
+    const double overrun = spindle.overrun();
+    run_out_ = overrun > 0 ? TapTuning::RUN_OUT * overrun + 1.0 : TapTuning::UNKNOWN_RUN_OUT;
     run_out_ = under_way ? run_out_ : -1.0;
     stop_turned_ = direction_ * spindle.turns - origin_;
     stopped_ = true;
@@ -48,7 +38,7 @@ TapFollower::Turning TapFollower::read(const SpindleReading &spindle) const noex
     Turning t;
     t.turned = direction_ * spindle.turns - origin_;
     t.speed = direction_ * spindle.turns_per_s;
-    t.overrun = overrun_of(spindle.turns_per_s, spindle.ramp_at(spindle.turns_per_s));
+    t.overrun = spindle.overrun();
     t.helix = {terms_.per_turn * t.turned, terms_.per_turn * t.speed,
                terms_.per_turn * direction_ * spindle.turns_per_s2};
     return t;

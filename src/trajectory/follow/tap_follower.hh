@@ -18,7 +18,7 @@ enum class TapPhase : std::uint8_t {
     BACK,      ///< it does, and the tool follows out
     LEAVING,   ///< the spindle has been told to turn forward again
     HOME,      ///< it does; the tool goes to the start by itself
-    STOPPING,  ///< a stop: the spindle is off, the tool follows it to its stand
+    STOPPING,  ///< a stop: the spindle is off, the tool follows it until it is stopped
     OVER,
 };
 

@@ -7,6 +7,7 @@
 
 #include "trajectory/path/move_request.hh"
 #include "trajectory/path/path_limits.hh"
+#include "trajectory/path/spindle_braking.hh"
 #include "trajectory/path/workspace.hh"
 
 namespace mw::trajectory {
@@ -36,8 +37,7 @@ struct Conditions {
     Workspace workspace;
     Scales scales;
     SingleBlocks blocks;
-    /// How fast spindles change their speed when they turn back: see SpindleReading.
-    std::array<std::array<double, 2>, MAX_SPINDLES> ramps{};
+    std::array<SpindleBrakings, MAX_SPINDLES> brakings{};
     SpeedChooser *chooser = nullptr;  ///< null: as fast as all that holds allows
 
     /// Driven by the executor, locked to the angle of a spindle. Machines whose joints are not axes drive

@@ -19,10 +19,6 @@ constexpr double LOAD_ROUNDING = 1e-9;
 /// A line on which the joints have no speed.
 constexpr double NO_SPEED = 1e-9;
 
-double ramp_at(const std::array<double, 2> &ramp, double rps) noexcept {
-    return rps < 0 ? ramp[1] : ramp[0];
-}
-
 double jerk_time(const MotionLimits &limits) noexcept {
     return limits.jerk < UNLIMITED ? limits.acceleration / limits.jerk : 0.0;
 }
@@ -38,10 +34,10 @@ double off_helix(double ramp, double use, const MotionLimits &limits) noexcept {
 
 /// The spindle reaches its speed in the retract, and keeps it until the tool follows it well again, before it
 /// is commanded forward.
-bool isBackLong(const TapTerms &tap, const std::array<double, 2> &ramp, double rps,
+bool isBackLong(const TapTerms &tap, const SpindleBrakings &brakings, double rps,
                 double settling_s) noexcept {
     const double back = tap.back_scale * std::abs(rps);
-    const double slowest = std::min(ramp[0], ramp[1]);
+    const double slowest = std::min(brakings[0].ramp, brakings[1].ramp);
     const double turns = slowest > 0 ? back * back / slowest + back * settling_s : 0.0;
     return turns * tap.per_turn <= tap.depth + TapTuning::CLEARANCE * tap.per_turn;
 }
@@ -56,9 +52,9 @@ TapTerms line_of(const TapRequest &tap) noexcept {
     out.low = -r.room_before;
     out.high = out.depth + r.room_behind;
     const double rps = tap.rps();
-    const double ramp = ramp_at(tap.ramp(), rps);
-    if (ramp > 0) {
-        const double turns = TapTuning::MORE_ROOM + rps * rps / ramp;
+    const SpindleBraking &braking = braking_at(tap.brakings(), rps);
+    if (braking.isKnown()) {
+        const double turns = TapTuning::MORE_ROOM + 2 * braking.overrun(rps);
         out.high = std::min(out.high, out.depth + turns * out.per_turn);
         if (tap.conditions.workspace.isMapped()) {
             out.low = std::max(out.low, -turns * out.per_turn);
@@ -129,7 +125,7 @@ TapTerms tap_terms(const TapRequest &tap) noexcept {
 TapVerdict check_tap(const TapRequest &tap) noexcept {
     const MoveRequest &r = tap.request;
     const double ahead = std::abs(tap.rps());
-    const std::array<double, 2> &ramp = tap.ramp();
+    const SpindleBrakings &brakings = tap.brakings();
     const TapTerms terms = line_of(tap);
     const Ability can = ability_of(tap, terms);
     const MotionLimits &limits = can.limits;
@@ -138,7 +134,7 @@ TapVerdict check_tap(const TapRequest &tap) noexcept {
     if (load > 1.0 + LOAD_ROUNDING) {
         return {TapObstacle::TOO_FAST, load};
     }
-    const double fastest = std::max(ramp[0], ramp[1]);
+    const double fastest = std::max(brakings[0].ramp, brakings[1].ramp);
     const double abruptness =
         terms.per_turn * fastest / (SpindlePursuit::MEETING_SHARE * limits.acceleration);
     if (abruptness > 1.0) {
@@ -146,7 +142,7 @@ TapVerdict check_tap(const TapRequest &tap) noexcept {
     }
     const double built_s = jerk_time(limits);
     if (built_s > 0) {
-        const bool one_by_one = isBackLong(terms, ramp, tap.rps(), TapTuning::SETTLING * built_s);
+        const bool one_by_one = isBackLong(terms, brakings, tap.rps(), TapTuning::SETTLING * built_s);
         // A spindle that slows down while it accelerates changes its acceleration by both.
         const double change = (one_by_one ? 1.0 : 2.0) * fastest;
         const double use = SpindlePursuit::MEETING_SHARE * abruptness;
@@ -155,8 +151,7 @@ TapVerdict check_tap(const TapRequest &tap) noexcept {
             return {TapObstacle::TOO_SUDDEN, off};
         }
     }
-    const double turn_back = ramp_at(ramp, tap.rps());
-    const double overrun = turn_back > 0 ? 0.5 * ahead * ahead / turn_back * terms.per_turn : 0.0;
+    const double overrun = braking_at(brakings, tap.rps()).overrun(ahead) * terms.per_turn;
     const double run_in = run_in_distance(terms.per_turn * ahead, limits);
     if (run_in + overrun > terms.depth) {
         return {TapObstacle::TOO_SHALLOW, (run_in + overrun) / terms.depth};

@@ -34,7 +34,7 @@ struct TapRequest {
     const Conditions &conditions;
 
     double rps() const noexcept { return conditions.scales.spindle_rps[spindle()]; }
-    const std::array<double, 2> &ramp() const noexcept { return conditions.ramps[spindle()]; }
+    const SpindleBrakings &brakings() const noexcept { return conditions.brakings[spindle()]; }
     std::size_t spindle() const noexcept { return static_cast<std::size_t>(request.spindle); }
 };
 

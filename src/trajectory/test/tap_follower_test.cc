@@ -42,8 +42,8 @@ struct Tapping {
         track.take(plant.shown_turns(), T);
     }
     SpindleReading reading(double known_ramp) const {
-        return {
-            track.turns(), track.turns_per_s(), track.turns_per_s2(), {known_ramp, known_ramp}, track.step()};
+        const SpindleBraking braking{0, known_ramp};
+        return {track.turns(), track.turns_per_s(), track.turns_per_s2(), {braking, braking}, track.step()};
     }
     /// Until it is over; `on_cycle` may stop it.
     template <class OnCycle>

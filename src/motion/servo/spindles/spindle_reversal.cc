@@ -8,8 +8,10 @@ namespace mw::motion {
 
 namespace {
 
-/// A spindle that has run back by this much has reversed; below the next speed it counts as stopped.
+/// A spindle that has run back by this much, and by more than its encoder may count to and fro, has reversed;
+/// below the next speed it counts as stopped.
 constexpr double TURNED = 0.02;  // [turns]
+constexpr double TURNED_STEPS = 2;
 constexpr double STANDING_RPS = 0.05;
 constexpr double STANDING_TURNS =
     1e-3;  // in a cycle: the encoder of a stopped spindle may still count to and fro
@@ -17,63 +19,103 @@ constexpr double STANDING_TURNS =
 constexpr double LONGEST_S = 60;
 /// Minimum, so that a spindle that reverses within a cycle has a ramp.
 constexpr double LEAST_TURNS = 1e-4;
+/// Shortest braking that is measured [cycles].
+constexpr double RESOLUTION = 2;
+/// A spindle that gets ahead of its speed at the command by more than this part, and by what its encoder
+/// leaves open, was still accelerating.
+constexpr double FASTER = 1.02;
 
-void begin(SpindleReversal &t, const SpindleMotion &now, double counted_rps) noexcept {
-    const bool isReversal = t.wanted * now.wanted < 0 && std::abs(counted_rps) > STANDING_RPS;
+double turned_back(const SpindleMotion &now) noexcept {
+    return std::max(TURNED, TURNED_STEPS * now.step);
+}
+
+void begin(SpindleReversal &t, const SpindleMotion &now) noexcept {
+    const bool isReversal = t.wanted * now.wanted < 0 && std::abs(now.speed) > STANDING_RPS;
     const bool isStart =
-        t.wanted == 0 && now.wanted != 0 && std::abs(counted_rps) * now.period_s < STANDING_TURNS;
+        t.wanted == 0 && now.wanted != 0 && std::abs(now.speed) * now.period_s < STANDING_TURNS;
     if (isReversal) {
         t.watching = SpindleReversal::Watching::REVERSAL;
-        t.direction = counted_rps < 0 ? -1.0 : 1.0;
+        t.direction = now.speed < 0 ? -1.0 : 1.0;
         t.from_turns = t.farthest = t.direction * now.turns;
         t.speed = std::max(std::abs(now.speed), STANDING_RPS);
     } else if (isStart) {
         t.watching = SpindleReversal::Watching::START;
-        t.speed = 0.5 * std::abs(now.wanted);
+        t.speed = std::abs(now.wanted);
+        t.quarter_s = 0;
     } else if (now.wanted != t.wanted) {
         t.watching = SpindleReversal::Watching::NOTHING;  // data from here belong to several commands
     }
-    t.seconds = isReversal || isStart ? 0.0 : t.seconds;
+    if (isReversal || isStart) {
+        t.seconds = t.arrived_s = t.left_s = 0;
+    }
+}
+
+/// Time from the command to standstill: the middle of the time for which the count was at its farthest step.
+/// A spindle that brakes evenly is within it for sqrt(2 step/ramp) before it stands; what takes longer is a
+/// pause of the drive.
+double standstill_s(const SpindleReversal &t, double overrun, double step) noexcept {
+    const double braking_s = std::max(2.0 * (t.arrived_s - overrun / t.speed), 0.0);
+    const double within_step_s = std::sqrt(2.0 * step * braking_s / t.speed);
+    return t.arrived_s + std::min(0.5 * (t.left_s - t.arrived_s), within_step_s);
 }
 
 void learn_reversal(SpindleReversal &t, const SpindleMotion &now) noexcept {
     const double counted = t.direction * now.turns;
-    t.farthest = std::max(t.farthest, counted);
-    if (counted > t.farthest - TURNED) {
+    if (counted > t.farthest) {
+        t.farthest = counted;
+        t.arrived_s = t.seconds;
+    }
+    t.left_s = counted >= t.farthest ? t.seconds : t.left_s;
+    if (counted - t.from_turns > FASTER * t.speed * t.seconds + turned_back(now)) {
+        t.watching = SpindleReversal::Watching::NOTHING;
         return;
     }
-    const double turns = std::max(t.farthest - t.from_turns, LEAST_TURNS);
-    t.learned[t.direction < 0 ? 1 : 0] = 0.5 * t.speed * t.speed / turns;
+    if (counted > t.farthest - turned_back(now)) {
+        return;
+    }
+    const double overrun = std::max(t.farthest - t.from_turns, LEAST_TURNS);
+    t.learned[t.direction < 0 ? 1 : 0] = trajectory::braking_of(
+        {t.speed, overrun, standstill_s(t, overrun, now.step), RESOLUTION * now.period_s});
+    t.watching = SpindleReversal::Watching::NOTHING;
+}
+
+/// The start at the ramp as it is between a quarter and half of the speed. A start takes as long to half of
+/// the speed as the overrun of a reversal takes at full speed.
+void learn_start(SpindleReversal &t, const SpindleMotion &now) noexcept {
+    const double speed = std::abs(now.speed);
+    if (t.quarter_s <= 0 && speed >= 0.25 * t.speed) {
+        t.quarter_s = t.seconds;
+    }
+    if (speed < 0.5 * t.speed) {
+        return;
+    }
+    const double ramp_s = 4.0 * (t.seconds - t.quarter_s);
+    t.guessed = trajectory::braking_of(
+        {t.speed, t.speed * t.seconds, t.seconds + 0.5 * ramp_s, RESOLUTION * now.period_s});
     t.watching = SpindleReversal::Watching::NOTHING;
 }
 
 }  // namespace
 
 void watch(SpindleReversal &t, const SpindleMotion &now) noexcept {
-    const double counted_rps = t.isBegun ? (now.turns - t.last_turns) / now.period_s : 0.0;
-    begin(t, now, counted_rps);
-    t.isBegun = true;
-    t.wanted = now.wanted;
-    t.last_turns = now.turns;
     t.seconds += now.period_s;
+    begin(t, now);
+    t.wanted = now.wanted;
     if (t.seconds > LONGEST_S) {
         t.watching = SpindleReversal::Watching::NOTHING;
     }
     switch (t.watching) {
     case SpindleReversal::Watching::NOTHING: break;
     case SpindleReversal::Watching::REVERSAL: learn_reversal(t, now); break;
-    case SpindleReversal::Watching::START:
-        if (std::abs(now.speed) >= t.speed) {
-            t.guessed = t.speed / t.seconds;
-            t.watching = SpindleReversal::Watching::NOTHING;
-        }
-        break;
+    case SpindleReversal::Watching::START: learn_start(t, now); break;
     }
 }
 
-std::array<double, 2> ramps_of(const SpindleReversal &t, double given) noexcept {
-    const double otherwise = given > 0 ? given : t.guessed;
-    return {t.learned[0] > 0 ? t.learned[0] : otherwise, t.learned[1] > 0 ? t.learned[1] : otherwise};
+trajectory::SpindleBrakings brakings_of(const SpindleReversal &t, double given_ramp) noexcept {
+    const trajectory::SpindleBraking otherwise =
+        given_ramp > 0 ? trajectory::SpindleBraking{0, given_ramp} : t.guessed;
+    return {t.learned[0].isKnown() ? t.learned[0] : otherwise,
+            t.learned[1].isKnown() ? t.learned[1] : otherwise};
 }
 
 }  // namespace mw::motion

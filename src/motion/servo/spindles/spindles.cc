@@ -217,14 +217,15 @@ std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &setting
         const double rpm = within_range(settings, n, speed_of(s, cycle.x) * scale * s.tap_factor);
         s.out_rpm = pins.isInhibited || !s.isOn ? 0.0 : rpm;
         s.commanded_rpm = within_range(settings, n, s.speed_rpm * s.tap_factor);
-        watch(s.turn_back, {s.out_rpm / 60.0, s.turns, s.speed_rps, cycle.period_s});
+        const CountedSpindle &counted = cycle.counted[at(n)];
+        watch(s.turn_back, {s.out_rpm / 60.0, s.turns, counted.turns_per_s, counted.step, cycle.period_s});
         faults |= hasOrientFailed(s, pins) ? 1U << n : 0U;
     }
     return faults;
 }
 
-std::array<double, 2> ramps_of(const Spindles &spindles, int n, const Settings &settings) noexcept {
-    return motion::ramps_of(spindles[n].turn_back, settings.get(Parameter::SPINDLE_RAMP, n) / 60.0);
+trajectory::SpindleBrakings brakings_of(const Spindles &spindles, int n, const Settings &settings) noexcept {
+    return motion::brakings_of(spindles[n].turn_back, settings.get(Parameter::SPINDLE_RAMP, n) / 60.0);
 }
 
 bool isReversible(const Settings &settings, int n) noexcept {

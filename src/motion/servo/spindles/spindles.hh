@@ -61,17 +61,24 @@ void switch_off(Spindles &spindles) noexcept;
 /// Values of the pins of the spindles. Returns a bit per spindle whose feedback is no number.
 std::uint32_t measure(Spindles &spindles, const Inputs &in) noexcept;
 
+/// A spindle as its counts show it.
+struct CountedSpindle {
+    double turns_per_s = 0;
+    double step = 0;  ///< of its encoder [turns]
+};
+
 struct SpindleCycle {
     double x = 0;  ///< commanded machine X, for constant surface speed
     TapTurning tap;
     double period_s = 1e-3;
+    std::array<CountedSpindle, MAX_SPINDLES> counted{};
 };
 /// One cycle. Returns a bit per spindle whose orientation has failed in it; `orient_fault` has the code.
 std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings,
                    const SpindleCycle &cycle) noexcept;
 
-/// How fast a spindle reverses, from running with its counts and against them [turns/s^2]; 0: not known.
-std::array<double, 2> ramps_of(const Spindles &spindles, int n, const Settings &settings) noexcept;
+/// How a spindle stops when it is commanded to reverse.
+trajectory::SpindleBrakings brakings_of(const Spindles &spindles, int n, const Settings &settings) noexcept;
 /// It may run in both directions.
 bool isReversible(const Settings &settings, int n) noexcept;
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How a spindle stops when it is commanded to reverse. Formulas: docs/integrator/spindles.md.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace mw::trajectory {
+
+/// The spindle keeps its speed during the delay of its drive, then changes it with a constant ramp.
+struct SpindleBraking {
+    double delay_s = 0;
+    double ramp = 0;  ///< [rev/s^2]; 0: not known
+
+    bool isKnown() const noexcept { return ramp > 0; }
+    /// Revolutions from the command to reverse until standstill; 0 if not known.
+    double overrun(double rps) const noexcept {
+        const double v = std::abs(rps);
+        return isKnown() ? v * (delay_s + 0.5 * v / ramp) : 0.0;
+    }
+};
+
+/// From running with the counts, and against them.
+using SpindleBrakings = std::array<SpindleBraking, 2>;
+
+inline const SpindleBraking &braking_at(const SpindleBrakings &brakings, double rps) noexcept {
+    return brakings[rps < 0 ? 1 : 0];
+}
+
+/// One measured reversal.
+struct MeasuredReversal {
+    double rps = 0;           ///< speed at the command, positive
+    double overrun = 0;       ///< revolutions until standstill
+    double standstill_s = 0;  ///< time until standstill
+    double resolution_s = 0;  ///< shortest braking that this measurement can tell from an instant one
+};
+
+/// Both constants from one reversal: the mean speed of the braking is half of `rps`, so it took
+/// `2 (standstill_s - overrun/rps)`. For any measured time, the delay is neither negative nor longer than
+/// the overrun allows. Thus the result has exactly the measured overrun at `rps`, and the overrun at any
+/// other speed lies between what grows with the speed and what grows with its square.
+inline SpindleBraking braking_of(const MeasuredReversal &m) noexcept {
+    const double at_full_speed_s = m.overrun / m.rps;
+    const double longest_s = 2.0 * at_full_speed_s;
+    const double braking_s =
+        std::clamp(2.0 * (m.standstill_s - at_full_speed_s), std::min(m.resolution_s, longest_s), longest_s);
+    return {at_full_speed_s - 0.5 * braking_s, m.rps / braking_s};
+}
+
+}  // namespace mw::trajectory
