@@ -24,6 +24,7 @@ class SpindleTrack {
         const double missed = turns - turns_;
         if (std::abs(missed) > JUMP) {  // the counter was set, or this is the first count
             turns_ = turns;
+            readings_ = 1;
             return;
         }
         const double kept = 1.0 / (1.0 + std::min(rate_, HIGHEST_RATE / dt) * dt);
@@ -36,28 +37,38 @@ class SpindleTrack {
     double turns_per_s() const noexcept { return speed_; }
     double turns_per_s2() const noexcept { return acceleration_; }
 
-    /// Step of the encoder [turns], as seen so far: the smallest second difference of the counts.
+    /// Step of the encoder [turns]: the median of the second differences of its counts that are not zero. At
+    /// a steady speed all of them are one step. Counts that are read at uneven times make it larger.
     double step() const noexcept { return step_; }
     void set_rate(double rate) noexcept { rate_ = rate; }
 
     static constexpr double JUMP = 0.5;            ///< [turns]
     static constexpr double SMALLEST_STEP = 1e-6;  ///< [turns]
-    static constexpr double HIGHEST_RATE = 0.6;    ///< in a cycle
+    /// A second difference changes the median by this part of it at most; the n-th one since the start by
+    /// 1/n.
+    static constexpr double STEP_GAIN = 0.02;
+    static constexpr double HIGHEST_RATE = 0.6;  ///< in a cycle
 
   private:
     void observe_step(double turns) noexcept {
-        const double bend = std::abs(turns - 2.0 * last_ + before_);
+        const double difference = std::abs(turns - 2.0 * last_ + before_);
         before_ = last_;
         last_ = turns;
-        if (bend > SMALLEST_STEP && bend < (1.0 - 1e-6) * step_) {
-            step_ = bend;
+        const bool is_difference = readings_ >= 2;
+        readings_ += is_difference ? 0 : 1;
+        if (is_difference && difference > SMALLEST_STEP && difference < JUMP) {
+            const double most = std::max(STEP_GAIN, 1.0 / ++differences_) * step_;
+            step_ += std::clamp(difference - step_, -most, most);
+            differences_ = std::min(differences_, 1.0 / STEP_GAIN);
         }
     }
 
     double turns_ = 0, speed_ = 0, acceleration_ = 0;
     double last_ = 0, before_ = 0;
+    int readings_ = 0;  ///< since the counter was set, up to 2
     double step_ = JUMP;
-    double rate_ = 150;  ///< [1/s], until somebody follows
+    double differences_ = 0;  ///< that have been seen, up to 1/STEP_GAIN
+    double rate_ = 150;       ///< [1/s], until somebody follows
 };
 
 /// What is known of a spindle in a servo cycle.

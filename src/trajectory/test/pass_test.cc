@@ -249,6 +249,45 @@ TEST(Pass, AStopAtAnyMomentKeepsTheLimits) {
     }
 }
 
+TEST(Pass, WithAnyEncoderIsAsExactAsItsStep) {
+    for (const double jerk : {UNLIMITED, 20000.0}) {
+        for (const int counts : {20, 60, 200, 1000, 4096, 10000}) {
+            double low = INFINITY, high = -INFINITY, off = 0, highest_a = 0;
+            for (const double rps : {3.1, 9.7, 21.3}) {
+                for (int n = 0; n < 3; ++n) {
+                    Threading t(rps, jerk, counts);
+                    for (int i = 0; i < 17 * n; ++i) {
+                        t.turn(rps);
+                    }
+                    t.make({test::at(0), test::at(0, 0, -100)}, LEAD);
+                    double last = 0, last_v = 0;
+                    t.run(LEAD, 30, 80, [&](int) {
+                        const double s = t.follower.s(), v = (s - last) / T;
+                        if (s > 30 && s < 80) {
+                            highest_a = std::max(highest_a, std::abs(v - last_v) / T);
+                        }
+                        last = s;
+                        last_v = v;
+                    });
+                    EXPECT_TRUE(t.seen.is_over);
+                    t.expect_limits(100, 1000, jerk);
+                    const double angle = t.seen.phase - std::round(t.seen.phase);
+                    low = std::min(low, angle);
+                    high = std::max(high, angle);
+                    off = std::max(off, t.seen.farthest);
+                }
+            }
+            std::printf(
+                "%5d counts, jerk %7.1g: start angles differ by %.5f rev (%.2f steps), in a pass by %.5f "
+                "(%.2f), acceleration %.0f\n",
+                counts, jerk, high - low, (high - low) * counts, off, off * counts, highest_a);
+            EXPECT_LE(high - low, 0.15 / counts + 1e-4);
+            EXPECT_LE(off, 0.25 / counts + 1e-4);
+            EXPECT_LE(highest_a, 250);
+        }
+    }
+}
+
 TEST(Pass, ARoughEncoderDoesNotShakeTheMachine) {
     for (const double jerk : {UNLIMITED, 20000.0}) {
         Threading t(9.7, jerk, 200);

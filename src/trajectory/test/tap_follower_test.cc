@@ -25,11 +25,12 @@ struct Tapping {
     double deepest = 0;   ///< x
     double highest_v = 0, highest_a = 0, highest_j = 0;
 
-    Tapping(double speed, double drive_ramp)
+    Tapping(double speed, double drive_ramp, int counts = 4096)
         : plant([&] {
               plants::SpindleTraits traits;
               traits.ramp = drive_ramp;
               traits.first_turns = 0.3;
+              traits.counts_per_turn = counts;
               return traits;
           }()),
           rps(speed), ramp(drive_ramp) {
@@ -115,6 +116,25 @@ TEST(TapFollower, KeepsToTheAngleThroughBothReversalsAndEndsAtItsStart) {
             EXPECT_NEAR(tapping.deepest, DEPTH, 0.2 * PITCH) << rpm;
             EXPECT_LE(tapping.highest_v, 100);
             EXPECT_LE(tapping.highest_a, 1000 * (1 + 1e-9));
+        }
+    }
+}
+
+TEST(TapFollower, WithAnyEncoderKeepsToTheAngle) {
+    for (const double jerk : {NO_JERK_LIMIT, 20000.0}) {
+        for (const int counts : {20, 60, 200, 1000, 4096, 10000}) {
+            for (const double rpm : {200.0, 600.0, 1200.0}) {
+                Tapping tapping(rpm / 60, 1000.0 / 60 / 0.5, counts);
+                ASSERT_TRUE(tapping.run(tapping.ramp, terms(jerk)));
+                const double bottom = (tapping.deepest - DEPTH) / PITCH;
+                std::printf(
+                    "%5d counts, %4.0f rpm, jerk %7.1g: %.5f rev off the helix (%.2f steps), bottom %.4f\n",
+                    counts, rpm, jerk, tapping.farthest, tapping.farthest * counts, bottom);
+                EXPECT_FALSE(tapping.tap.isLost());
+                EXPECT_LE(tapping.farthest, 2.5 / counts + (jerk < NO_JERK_LIMIT ? 0.006 : 0.0015));
+                EXPECT_LE(std::abs(bottom), 3.0 / counts + 0.03);
+                EXPECT_LE(tapping.highest_a, 1000 * (1 + 1e-9));
+            }
         }
     }
 }
