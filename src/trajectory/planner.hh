@@ -81,8 +81,10 @@ class Planner {
     TapVerdict check_tap(Sequence move) const noexcept {
         return plan::check_tap({path_.primitive(move), path_.move(move).request, conditions_});
     }
-    void set_brakings(const std::array<SpindleBrakings, MAX_SPINDLES> &brakings) noexcept {
+    void set_spindles(const std::array<SpindleBrakings, MAX_SPINDLES> &brakings,
+                      const std::array<double, MAX_SPINDLES> &encoder_steps) noexcept {
         conditions_.brakings = brakings;
+        conditions_.encoder_steps = encoder_steps;
     }
     /// Seconds from a snapshot to the earliest start of a plan made with it.
     double latency_s() const noexcept { return static_cast<double>(settings_.latency) * settings_.period_s; }

@@ -187,9 +187,10 @@ struct TapTuning {
     /// quarter of a revolution, the tap is lost.
     static constexpr double MET = 1e-3, MET_STEPS = 2, LOST = 0.25;
     /// With jerk limits: a tap that would leave the helix by more while its spindle reverses is rejected
-    /// [rev]. The change is seen late by the time of the speed measurement, of which half the square counts
-    /// [s^2]. After a change the tool is on the helix again within so many times of A/J.
-    static constexpr double MOST_OFF = 0.1, LATE_S2 = 2e-4, SETTLING = 2;
+    /// [rev]. The change is seen late: LATE over the square of the rate of the measurement, and LATE_CYCLES
+    /// squared servo periods. Measured. After a change the tool is on the helix again within so many times of
+    /// A/J.
+    static constexpr double MOST_OFF = 0.1, LATE = 4, LATE_CYCLES = 10, SETTLING = 2;
     /// The tool leaves the thread by this much before the spindle runs forward again [rev].
     static constexpr double CLEARANCE = 0.5;
     /// Clearance of the tool below the bottom in addition to the known overrun of the spindle, and minimum

@@ -55,6 +55,7 @@ struct PathView {
     std::uint32_t spindles_ready = 0;  ///< bit per spindle that is at speed or off
     std::uint32_t spindles_reversible = 0;
     std::array<trajectory::SpindleBrakings, MAX_SPINDLES> spindle_brakings{};
+    std::array<double, MAX_SPINDLES> encoder_steps{};  ///< [rev]
     bool isProbeClosed = false;
     std::uint32_t probe_trips = 0;  ///< counts probe moves that were tripped
     std::uint32_t steps = 0;        ///< counts StepOnce

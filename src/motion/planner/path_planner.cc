@@ -91,7 +91,7 @@ void PathPlanner::follow_controller() noexcept {
     scales.max_feed = view_.max_feed_scale;
     scales.max_velocity = view_.max_velocity;
     scales.spindle_rps = view_.spindle_rps;
-    planner_.set_brakings(view_.spindle_brakings);
+    planner_.set_spindles(view_.spindle_brakings, view_.encoder_steps);
     planner_.set_scales(scales);
 }
 

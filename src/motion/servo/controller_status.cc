@@ -190,6 +190,7 @@ void Controller::publish_view(const Inputs &in, const geometry::Pose &programmed
         v.spindle_rps[i] = spindles_[n].speed_rps;
         v.spindle_revs[i] = spindles_[n].turns;
         v.spindle_brakings[i] = brakings_of(spindles_, n, settings_);
+        v.encoder_steps[i] = executor_.spindle(n).track.step();
         v.spindles_reversible |= isReversible(settings_, n) ? 1U << n : 0U;
         v.spindles_ready |= isReady(spindles_[n], in.spindle[i]) ? 1U << n : 0U;
     }

@@ -38,7 +38,8 @@ struct Conditions {
     Scales scales;
     SingleBlocks blocks;
     std::array<SpindleBrakings, MAX_SPINDLES> brakings{};
-    SpeedChooser *chooser = nullptr;  ///< null: as fast as all that holds allows
+    std::array<double, MAX_SPINDLES> encoder_steps{};  ///< [rev]
+    SpeedChooser *chooser = nullptr;                   ///< null: as fast as all that holds allows
 
     /// Driven by the executor, locked to the angle of a spindle. Machines whose joints are not axes drive
     /// threads by time, but not taps.

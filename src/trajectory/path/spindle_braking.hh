@@ -33,10 +33,10 @@ struct MeasuredReversal {
     double rps = 0;           ///< speed at the command, positive
     double overrun = 0;       ///< revolutions until standstill
     double standstill_s = 0;  ///< time until standstill
-    double resolution_s = 0;  ///< shortest braking that this measurement can tell from an instant one
+    double resolution_s = 0;  ///< resolution of the braking time
 };
 
-/// Both constants from one reversal: the mean speed of the braking is half of `rps`, so it took
+/// Both constants from one reversal: the average speed while braking is half of `rps`, so it took
 /// `2 (standstill_s - overrun/rps)`. For any measured time, the delay is neither negative nor longer than
 /// the overrun allows. Thus the result has exactly the measured overrun at `rps`, and the overrun at any
 /// other speed lies between what grows with the speed and what grows with its square.

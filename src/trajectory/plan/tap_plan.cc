@@ -26,10 +26,18 @@ double jerk_time(const MotionLimits &limits) noexcept {
 /// Deviation of the tool from the helix [revolutions] while a spindle of this ramp reverses. Following it
 /// takes the part `use` of the tool's acceleration, which is built up over the time `use` of jerk_time: the
 /// tool loses by that, and makes it good with the rest of the acceleration.
-double off_helix(double ramp, double use, const MotionLimits &limits) noexcept {
+double off_helix(double ramp, double use, const MotionLimits &limits, double late_s2) noexcept {
     const double built_s = use * jerk_time(limits);
     const double caught_up = use < 1 ? use / (1 - use) : UNLIMITED;
-    return ramp * (TapTuning::LATE_S2 + built_s * built_s / 6 + 0.125 * built_s * built_s * caught_up);
+    return ramp * (late_s2 + built_s * built_s / 6 + 0.125 * built_s * built_s * caught_up);
+}
+
+/// By this time, squared and halved, a change of the spindle's acceleration is followed late [s^2].
+double late_s2(const TapRequest &tap, double per_turn, const MotionLimits &limits) noexcept {
+    const double dt = tap.conditions.limits.period_s();
+    const double rate =
+        following_rate(per_turn, tap.encoder_step(), usable_jerk(limits.jerk, limits.acceleration, dt), dt);
+    return TapTuning::LATE / (rate * rate) + TapTuning::LATE_CYCLES * dt * dt;
 }
 
 /// The spindle reaches its speed in the retract, and keeps it until the tool follows it well again, before it
@@ -146,7 +154,7 @@ TapVerdict check_tap(const TapRequest &tap) noexcept {
         // A spindle that slows down while it accelerates changes its acceleration by both.
         const double change = (one_by_one ? 1.0 : 2.0) * fastest;
         const double use = SpindlePursuit::MEETING_SHARE * abruptness;
-        const double off = off_helix(change, use, limits);
+        const double off = off_helix(change, use, limits, late_s2(tap, terms.per_turn, limits));
         if (off > TapTuning::MOST_OFF) {
             return {TapObstacle::TOO_SUDDEN, off};
         }

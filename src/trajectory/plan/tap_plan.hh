@@ -35,6 +35,7 @@ struct TapRequest {
 
     double rps() const noexcept { return conditions.scales.spindle_rps[spindle()]; }
     const SpindleBrakings &brakings() const noexcept { return conditions.brakings[spindle()]; }
+    double encoder_step() const noexcept { return conditions.encoder_steps[spindle()]; }
     std::size_t spindle() const noexcept { return static_cast<std::size_t>(request.spindle); }
 };
 

@@ -19,11 +19,15 @@ constexpr double STANDING_TURNS =
 constexpr double LONGEST_S = 60;
 /// Minimum, so that a spindle that reverses within a cycle has a ramp.
 constexpr double LEAST_TURNS = 1e-4;
-/// Shortest braking that is measured [cycles].
-constexpr double RESOLUTION = 2;
+/// Shortest braking that can be measured, in cycles, and in the time of a step of the encoder.
+constexpr double RESOLUTION = 2, RESOLUTION_STEPS = 10;
 /// A spindle that gets ahead of its speed at the command by more than this part, and by what its encoder
 /// leaves open, was still accelerating.
 constexpr double FASTER = 1.02;
+
+double resolution_s(const SpindleReversal &t, const SpindleMotion &now) noexcept {
+    return std::max(RESOLUTION * now.period_s, RESOLUTION_STEPS * now.step / t.speed);
+}
 
 double turned_back(const SpindleMotion &now) noexcept {
     return std::max(TURNED, TURNED_STEPS * now.step);
@@ -51,8 +55,8 @@ void begin(SpindleReversal &t, const SpindleMotion &now) noexcept {
 }
 
 /// Time from the command to standstill: the middle of the time for which the count was at its farthest step.
-/// A spindle that brakes evenly is within it for sqrt(2 step/ramp) before it stands; what takes longer is a
-/// pause of the drive.
+/// A spindle that brakes evenly is within it for sqrt(2 step/ramp) before it is stopped; what takes longer is
+/// a pause of the drive.
 double standstill_s(const SpindleReversal &t, double overrun, double step) noexcept {
     const double braking_s = std::max(2.0 * (t.arrived_s - overrun / t.speed), 0.0);
     const double within_step_s = std::sqrt(2.0 * step * braking_s / t.speed);
@@ -74,15 +78,15 @@ void learn_reversal(SpindleReversal &t, const SpindleMotion &now) noexcept {
         return;
     }
     const double overrun = std::max(t.farthest - t.from_turns, LEAST_TURNS);
-    t.learned[t.direction < 0 ? 1 : 0] = trajectory::braking_of(
-        {t.speed, overrun, standstill_s(t, overrun, now.step), RESOLUTION * now.period_s});
+    t.learned[t.direction < 0 ? 1 : 0] =
+        trajectory::braking_of({t.speed, overrun, standstill_s(t, overrun, now.step), resolution_s(t, now)});
     t.watching = SpindleReversal::Watching::NOTHING;
 }
 
 /// The start at the ramp as it is between a quarter and half of the speed. A start takes as long to half of
 /// the speed as the overrun of a reversal takes at full speed.
 void learn_start(SpindleReversal &t, const SpindleMotion &now) noexcept {
-    const double speed = std::abs(now.speed);
+    const double speed = std::abs(now.shown_speed);
     if (t.quarter_s <= 0 && speed >= 0.25 * t.speed) {
         t.quarter_s = t.seconds;
     }
@@ -91,7 +95,7 @@ void learn_start(SpindleReversal &t, const SpindleMotion &now) noexcept {
     }
     const double ramp_s = 4.0 * (t.seconds - t.quarter_s);
     t.guessed = trajectory::braking_of(
-        {t.speed, t.speed * t.seconds, t.seconds + 0.5 * ramp_s, RESOLUTION * now.period_s});
+        {t.speed, t.speed * t.seconds, t.seconds + 0.5 * ramp_s, resolution_s(t, now)});
     t.watching = SpindleReversal::Watching::NOTHING;
 }
 

@@ -15,6 +15,7 @@ struct SpindleMotion {
     double speed = 0;  ///< by the counts, with their sign [turns/s]
     double step = 0;   ///< of the encoder [turns]
     double period_s = 1e-3;
+    double shown_speed = 0;  ///< by the pin: perhaps late or without a sign, but smooth [turns/s]
 };
 
 /// Delay and ramp are learned from each reversal from a steady speed; before the first one, from the start of

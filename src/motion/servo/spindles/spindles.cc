@@ -218,7 +218,8 @@ std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &setting
         s.out_rpm = pins.isInhibited || !s.isOn ? 0.0 : rpm;
         s.commanded_rpm = within_range(settings, n, s.speed_rpm * s.tap_factor);
         const CountedSpindle &counted = cycle.counted[at(n)];
-        watch(s.turn_back, {s.out_rpm / 60.0, s.turns, counted.turns_per_s, counted.step, cycle.period_s});
+        watch(s.turn_back,
+              {s.out_rpm / 60.0, s.turns, counted.turns_per_s, counted.step, cycle.period_s, s.speed_rps});
         faults |= hasOrientFailed(s, pins) ? 1U << n : 0U;
     }
     return faults;

@@ -20,7 +20,8 @@ struct Reversals : testing::Test {
     void drive(plants::SpindlePlant &spindle, double wanted, int cycles) {
         for (int i = 0; i < cycles; ++i) {
             track.take(spindle.shown_turns(), T);
-            watch(reversal, {wanted, spindle.shown_turns(), track.turns_per_s(), track.step(), T});
+            watch(reversal,
+                  {wanted, spindle.shown_turns(), track.turns_per_s(), track.step(), T, track.turns_per_s()});
             spindle.run(wanted, 0, T);
         }
     }
