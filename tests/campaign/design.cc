@@ -290,11 +290,6 @@ double Design::longest_mean_s() const {
     return isJerkLimited ? most : 0;
 }
 
-double Design::gentlest_ramp(double turns_s) const {
-    constexpr double READING_S = 0.02;
-    return turns_s / (turns_s / spindle.ramp + 2 * (spindle.lag_s + spindle.reaction_s) + READING_S);
-}
-
 void wear(plants::Random &random, Design &design) {
     const bool hasPlay = random.chance(0.3);
     const bool hasScrews = random.chance(0.3);
@@ -336,16 +331,6 @@ void allow_offsets(plants::Random &random, Design &design) {
     for (AxisDesign &a : design.axes) {
         a.offset_ratio = random.chance(0.6) ? rounded(random.real(0.1, 0.6), 0.01) : 0;
     }
-}
-
-void equip_spindle(plants::Random &random, Design &design) {
-    plants::SpindleTraits &s = design.spindle;
-    design.hasSpindlePlant = true;
-    s.ramp = random.real(7000, 12000) / 60;
-    s.lag_s = random.chance(0.5) ? 0 : random.real(0.001, 0.006);
-    s.reaction_s = random.chance(0.5) ? 0 : random.real(0.001, 0.015);
-    s.counts_per_turn = random.chance(0.7) ? 4096 : 1024;
-    s.first_turns = random.real(0, 1);
 }
 
 void shorten(plants::Random &random, Design &design) {

@@ -80,6 +80,12 @@ struct Design {
     /// The longest jerk filter that a linear axis or joint needs (docs/developer/planner.md, "Choice of tau")
     /// [s].
     double longest_mean_s() const;
+    /// Z with the joints that move along with it: where joints are not axes all that are linear may.
+    AxisDesign z_with_joints() const;
+    /// Deviation of Z from the helix of a tap [rev] while the spindle reverses with `ramp`: the formula of
+    /// docs/integrator/spindles.md ("Bounds"). Where joints are not axes, their curves may take half of
+    /// acceleration and jerk.
+    double off_helix(double lead, double ramp) const;
     /// Ramp that motion may assume for the spindle, whose drive has delay and lag, after it has started to a
     /// speed [rev/s] and before it reverses [rev/s^2].
     double gentlest_ramp(double turns_s) const;

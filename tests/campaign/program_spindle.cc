@@ -9,28 +9,15 @@
 
 namespace mw::campaign {
 
-/// Z with the joints that move along with it: where joints are not axes all that are linear may.
-AxisDesign Writer::z_with_joints() const {
-    AxisDesign z = axis(geometry::AXIS_Z);
-    for (const JointDesign &j : design_.joints) {
-        if (!design_.isTrivial && !j.isAngular) {
-            z.velocity = std::min(z.velocity, j.velocity);
-            z.acceleration = std::min(z.acceleration, j.acceleration);
-            z.jerk = z.jerk > 0 && j.jerk > 0 ? std::min(z.jerk, j.jerk) : std::max(z.jerk, j.jerk);
-        }
-    }
-    return z;
-}
-
 /// A part of what Z can.
 double Writer::speed_for_z(double share) const {
-    const AxisDesign z = z_with_joints();
+    const AxisDesign z = design_.z_with_joints();
     return share * std::min((1 - z.offset_ratio) * z.velocity, design_.velocity);
 }
 
 /// Along Z, as a thread gains speed: with jerk limits part of the acceleration is kept for the spindle.
 double Writer::way_to_speed(double v) const {
-    const AxisDesign z = z_with_joints();
+    const AxisDesign z = design_.z_with_joints();
     const double a = 0.45 * std::min(z.acceleration_of_path(), design_.acceleration);
     const double jerk =
         z.jerk > 0 && design_.jerk > 0 ? std::min(z.jerk, design_.jerk) : std::max(z.jerk, design_.jerk);
@@ -100,19 +87,11 @@ void Writer::write_surface(SyncWish &sync) {
     say("G97 S300");
 }
 
-/// Deviation of the tool from the helix by the jerk filter while the spindle reverses [rev]; an empirical
-/// formula, see docs/integrator/spindles.md.
-double Writer::off_helix(double lead, double ramp, double mean_s) const {
-    const double a = 0.49 * std::min(z_with_joints().acceleration, design_.acceleration);
-    const double use = std::min(0.99, lead * ramp / a);
-    return ramp * (2e-4 + 0.18 * mean_s * mean_s * use / (1 - use));
-}
-
 Act Writer::write_in_step() {
     Act act;
     act.work = Work::SPINDLE;
     SyncWish &sync = act.sync;
-    const AxisDesign z = z_with_joints();
+    const AxisDesign z = design_.z_with_joints();
     say("G21 G90 G17 G94 G80 G40 G97 G8");
     set_mode();
     move_to_start();
@@ -138,10 +117,9 @@ Act Writer::write_in_step() {
             if (design_.isJerkLimited) {
                 // A tap that would leave its thread is rejected; between the two bounds both results are
                 // correct.
-                constexpr double LONGEST_MEAN = 1.25, WELL = 0.08, BADLY = 0.25;
-                const double mean_s = std::max(design_.rise_s(), design_.longest_mean_s());
-                isSudden = off_helix(sync.lead, design_.gentlest_ramp(turns_s), mean_s) > BADLY;
-                const bool isWell = off_helix(sync.lead, design_.spindle.ramp, LONGEST_MEAN * mean_s) < WELL;
+                constexpr double WELL = 0.08, BADLY = 0.12;
+                isSudden = design_.off_helix(sync.lead, design_.gentlest_ramp(turns_s)) > BADLY;
+                const bool isWell = design_.off_helix(sync.lead, design_.spindle.ramp) < WELL;
                 isTap = isSudden || isWell;
                 kind = isTap ? kind : 0;
             }

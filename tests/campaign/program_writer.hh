@@ -31,10 +31,8 @@ class Writer {
     void write_taps(SyncWish &sync);
     void write_per_turn(SyncWish &sync);
     void write_surface(SyncWish &sync);
-    AxisDesign z_with_joints() const;
     double speed_for_z(double share) const;
     double way_to_speed(double v) const;
-    double off_helix(double lead, double ramp, double mean_s) const;
     void start_spindle(double rpm);
     double probe(const Contact &contact, bool isHigh, int kind, double to);
     bool probe_wrongly(const Contact &contact, bool isHigh, bool isTouching);

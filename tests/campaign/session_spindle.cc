@@ -90,14 +90,14 @@ void Session::check_helix(const SyncWish &sync) {
                                  sync.passes));
         return;
     }
+    // A tap is deeper than its helix while the spindle brakes, and less deep as it has reversed. Motion
+    // rejects a tap if the expected deviation exceeds 0.1 rev; it knows the ramp with an accuracy of a fifth.
+    constexpr double THREAD = 0.001, WORST = 0.12;
+    // What the curves of joints leave of the jerk limits, the judge does not know.
+    const bool isKnown = d.isTrivial || !d.isJerkLimited;
+    const double late = isKnown ? std::min(d.off_helix(sync.lead, d.spindle.ramp), WORST) : WORST;
     const double rough = 2.0 / d.spindle.counts_per_turn;
-    // Motion rejects a tap if the expected deviation exceeds 0.1 rev. It knows the ramp with an accuracy of
-    // one half.
-    const double worst = 0.1 * 1.5 * d.spindle.ramp / d.gentlest_ramp(std::abs(sync.rpm) / 60);
-    const double mean_s = 2 * std::max(d.rise_s(), d.longest_mean_s());
-    const double late = sync.kind == Sync::TAP ? std::min(d.spindle.ramp * mean_s * mean_s / 4, worst) : 0;
-    const double most =
-        rough + (d.isJerkLimited ? 0.02 : 0.005) + (sync.kind == Sync::TAP ? 0.015 : 0) + late;
+    const double most = rough + THREAD + (sync.kind == Sync::TAP ? 2 * late : 0);
     const double sense = sync.to > sync.from ? 1 : -1;
     const double turning = sync.rpm > 0 ? 1 : -1;
     const double length = std::abs(sync.to - sync.from);
@@ -123,7 +123,8 @@ void Session::check_helix(const SyncWish &sync) {
             fail("helix",
                  fmt::format("a pass is {:.4f} turns beside another one", std::remainder(here - phase, 1.0)));
         }
-        const double deep = sync.kind == Sync::TAP ? sync.lead : 1e-6;
+        constexpr double BOTTOM = 0.25;  // of a revolution; the first hole relies on the start of the spindle
+        const double deep = sync.kind == Sync::TAP ? BOTTOM * sync.lead : 1e-6;
         if (std::abs(deepest - length) > deep) {
             fail("work", fmt::format("a pass is {:.6g} deep instead of {:.6g}", deepest, length));
         }
