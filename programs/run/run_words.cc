@@ -32,8 +32,8 @@ options::CommandLine run_line(RunWords &run, options::Words &rest) {
                 "begin at this line: earlier lines are calculated, and a person confirms the approach",
                 run.from_line, 1, MOST_LINES);
     line.number("--patience", "SECONDS",
-                "stop after this time without progress (default 60, in the machine's time)", run.patience_s,
-                0.001, MOST_PATIENCE_S);
+                "stop after this time without progress (default 60; in a simulation, virtual time)",
+                run.patience_s, 0.001, MOST_PATIENCE_S);
     line.on_or_off("--optional-stop", "M1 stops (on)", run.switches.optional_stop_on);
     line.on_or_off("--block-delete", "lines that begin with / are left out (on)",
                    run.switches.block_delete_on);

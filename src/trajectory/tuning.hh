@@ -13,10 +13,10 @@ namespace mw::trajectory {
 struct PathTuning {
     /// Tangents that differ by less are equal except for rounding: the step of speed is below any limit.
     static constexpr double SAME_DIRECTION = 1e-11;
-    /// Exact path: corners that come from rounding of a program's figures are passed: 0.02 is what figures
-    /// rounded to 0.001 do to the tangents of lines of 0.1,
+    /// Exact path: a smaller change of the tangent is rounding of the program's numbers and no corner.
+    /// Coordinates rounded to 0.001 change the tangent of lines of 0.1 by up to 0.02.
     static constexpr double EXACT_STEP = 0.02;
-    /// within a deviation that no machine shows [machine units].
+    /// Exact path: the deviation with which such a corner is passed [machine units].
     static constexpr double EXACT_DEVIATION = 1e-6;
     /// A path that turns back by more than this (cosine; 154 deg) is a reversal: the end of the move is what
     /// matters, and a blend would cut it off by half its d.

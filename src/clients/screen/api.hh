@@ -21,8 +21,8 @@ struct ApiSetup {
     MachineFacts facts;
     ScreensSetup screens;
     std::string screen_folder;
-    /// Begins to read a program in a separate thread; an error when too many are read. The path is one of
-    /// facts.program_prefix.
+    /// Begins to read a program in a separate thread. An error when too many programs are being read. The
+    /// path is in the folder facts.program_prefix.
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const Requester &)> read_path;
     /// The same for its times, at the overrides of the second.
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const TimeOverrides &,

@@ -60,7 +60,7 @@ class Browser {
     bool isAttached() const { return shared_ != nullptr; }
     /// The next status is a whole one.
     void forget_status() { has_whole_ = false; }
-    /// It is gone: what was under way has failed.
+    /// The machine has ended: all open requests have failed.
     void leave();
     bool isJoined() const { return client_.has_value(); }
     /// Number in the mailbox, 0 without a machine.

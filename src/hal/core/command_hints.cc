@@ -51,8 +51,8 @@ constexpr Absent ABSENT[] = {
                                              "LinuxCNC's package; 'millwright select' has samples"},
     {" io iov2 milltask halui linuxcncsvr rtapi_app linuxcnc_module_helper tpmod homemod inihal ",
      "it is a part of the machine and is not started separately: use 'millwright start MACHINE.ini'"},
-    {" halrmt linuxcnclcd ", "it is not there; linuxcncrsh, halcmd and the Python modules linuxcnc and hal "
-                             "drive a machine from other programs"},
+    {" halrmt linuxcnclcd ", "it is not available in Millwright; linuxcncrsh, halcmd and the Python modules "
+                             "linuxcnc and hal control a machine from other programs"},
     {" classicladder classicladder_rt ", "there are no ladders yet; the components of logic (and2, or2, "
                                          "lut5, estop_latch, timedelay) or one of your own by "
                                          "halcompile do the same"},

@@ -207,7 +207,8 @@ Result<std::string> Scanner::take_expression(std::string_view stops, std::string
         if (c == '(' || c == '[' || c == '{') {
             open += c == '(' ? ')' : c == '[' ? ']' : '}';
             if (open.size() > MOST_NESTED) {
-                return fail(fmt::format("more than {} brackets are in one another", MOST_NESTED), place());
+                return fail(fmt::format("brackets are nested more than {} levels deep", MOST_NESTED),
+                            place());
             }
         } else if (!open.empty() && c == open.back()) {
             open.pop_back();

@@ -101,7 +101,7 @@ std::vector<std::string> Placeholders::report() const {
     for (const Program &program : programs_) {
         std::string line = fmt::format("not started: {}", program.command);
         for (std::size_t i = 0; i < program.pins.size(); ++i) {
-            line += (i == 0 ? "; without effect: " : ", ") + program.pins[i];
+            line += (i == 0 ? "; pins without effect: " : ", ") + program.pins[i];
         }
         lines.push_back(std::move(line));
     }

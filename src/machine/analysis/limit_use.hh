@@ -37,7 +37,7 @@ struct CoordinateUse {
     std::array<LargestUse, DERIVATIVES> largest;
 
     bool hasLimit(std::size_t derivative) const;
-    /// Of the largest value to the limit; 0 without a limit.
+    /// The largest value over the limit; 0 without a limit.
     double ratio(std::size_t derivative) const;
 };
 

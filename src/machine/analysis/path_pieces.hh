@@ -24,7 +24,7 @@ struct ProgrammedMove {
     geometry::PathMode mode = geometry::PathMode::BLEND;
     double tolerance = 0;  ///< in BLEND: the maximum distance from the path [machine units, degrees]; 0: none
     ProgramLine source;
-    bool isMeasured = true;  ///< false: the move follows something else than the path (rigid tapping)
+    bool isMeasured = true;  ///< false: the move does not follow the path (rigid tapping)
 };
 
 /// What "exact path" means: the maximum distance in G61 and G61.1 [machine units, degrees].

@@ -198,7 +198,7 @@ Flow<Finding> check_estop(Stage &stage, int joint) {
     if (off != Fault::NONE) {
         co_return found("estop", stage, joint, off);
     }
-    stage.show(by_hand("estop", "", "Press the emergency stop button. The machine must go off."));
+    stage.show(by_hand("estop", "", "Press the emergency stop button. The machine must switch off."));
     const double off_s = stage.bench().now_s() + PATIENCE_S;
     while (stage.bench().isOn() && stage.bench().now_s() < off_s && !stage.isGivenUp()) {
         co_await stage.next_cycle();

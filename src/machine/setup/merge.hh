@@ -21,7 +21,7 @@ struct Merged {
     std::vector<Conflict> conflicts;  ///< empty: both sides' changes are in `text`
 };
 
-/// Which lines a conflict gives to the text.
+/// The side whose lines are used where both have changed the same lines.
 enum class Side { EDITED, WANTED };
 
 /// Changes of lines from `generated` to `edited` and from `generated` to `wanted`, together.

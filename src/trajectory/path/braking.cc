@@ -76,7 +76,7 @@ struct Demand {
         of = std::max(of, first * BrakingTuning::MARGIN);
         turning = std::max(turning, second * BrakingTuning::MARGIN);
     }
-    /// What is left for braking at the squared speed b.
+    /// Deceleration that is available at the squared speed b.
     double room(double b) const noexcept {
         const double limit = acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN);
         const double used = std::min(limit, turning * b);

@@ -14,7 +14,7 @@ namespace {
 using Joints = std::array<double, MAX_JOINTS>;
 using Tuning = LineJointTuning;
 
-/// Derivatives by differences over five places around x, where q(x + n h) is at[n + 2].
+/// Derivatives by finite differences of five samples around x; q(x + n h) is at[n + 2].
 LineJoints::Row derivatives(const std::array<Joints, 5> &at, std::size_t j, double h) noexcept {
     const auto q = [&](int n) { return at[static_cast<std::size_t>(n + 2)][j]; };
     const auto above = [](double value, double rounding) {

@@ -13,7 +13,7 @@ constexpr double REACH = 1.5;
 /// A stop takes the place of a speed that a start with full jerk has after so many periods: to pass saves
 /// less than twice their time.
 constexpr double STOP_PERIODS = 10;
-/// Part of the jerk limit that is left to the margins of the profile.
+/// A jump that takes less than this part of a limit is ignored: the margins of the profile cover it.
 constexpr double NEGLIGIBLE = 1e-3;
 /// A derivative below it is 0.
 constexpr double LEAST = 1e-30;

@@ -67,7 +67,7 @@ class DataLog {
     struct Segment {
         std::string path;
         RecordId first = 0;
-        std::vector<std::uint32_t> starts;  ///< of its records
+        std::vector<std::uint32_t> starts;  ///< offset of each record in the file [bytes]
         std::uint64_t bytes = 0;
     };
 

@@ -98,7 +98,7 @@ inline Value value_of(const Packet &packet, const std::string &name) {
     return metric == nullptr ? Value() : metric->value;
 }
 
-/// Each message has the number after that of the one before, but NBIRTH, which has 0.
+/// Sequence numbers increase by one from message to message; NBIRTH has 0.
 inline bool areNumbersConsecutive(const std::string &of_verb) {
     std::uint64_t expected = 0;
     std::size_t checked = 0;

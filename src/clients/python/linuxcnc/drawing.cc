@@ -69,7 +69,7 @@ class Drawing {
         for (const int axis : {geometry::AXIS_A, geometry::AXIS_B, geometry::AXIS_C}) {
             most = std::max(most, std::abs(to[axis] - from[axis]));
         }
-        constexpr double LIMIT = 10000;  // of a turn of many revolutions
+        constexpr double LIMIT = 10000;  // [deg]: a move of many revolutions has a bounded number of lines
         return most == 0 ? 1 : std::max(LEAST, static_cast<int>(std::ceil(std::min(most / DEGREES, LIMIT))));
     }
 

@@ -184,9 +184,9 @@ std::string mail_text(const NotifierSettings &settings, const Notification &what
     std::string body = fmt::format("{}\n{}\n{}\n{}\n", what.machine, what.source,
                                    publish::clean_text(what.message), what.at);
     if (what.late_s > LATE_S) {
-        body += fmt::format("Late: sent by the machine {} after that time, received {}. {}\n",
+        body += fmt::format("Late: the machine sent this {} after the event, received {}. {}\n",
                             duration(what.late_s), what.received,
-                            what.isOver ? "It is over." : "It is the newest value.");
+                            what.isOver ? "The condition has ended." : "No later value has come.");
     }
     // The same notification has the same number: a mail that comes twice can be recognised.
     const std::string domain =

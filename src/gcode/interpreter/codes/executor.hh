@@ -60,7 +60,7 @@ class Executor : public InterpreterState, public BuiltIns {
     // Results of a block for the caller.
     Fault fault;
     Outcome outcome = Outcome::OK;
-    FanucCall fanuc_call;  ///< the M98 of the outcome
+    FanucCall fanuc_call;  ///< the call by M98, with Outcome::CALL_FANUC
     Awaited awaited;
     BlockPlace block_place;
     ScriptLevels script_levels;

@@ -152,8 +152,9 @@ TEST_F(SessionTest, LeftOutProgramsGetPlaceholders) {
     EXPECT_EQ(host->hal().pins().find("panel.button")->signal, "early")
         << "linked once the signal's type was known";
     ASSERT_EQ(left_out.size(), 1U);
-    EXPECT_EQ(left_out[0],
-              "not started: pyvcp -c panel file.xml; without effect: panel.button, panel.lamp, panel.level");
+    EXPECT_EQ(
+        left_out[0],
+        "not started: pyvcp -c panel file.xml; pins without effect: panel.button, panel.lamp, panel.level");
     EXPECT_NE(run("net b other.pin"), "") << "unknown pins of no component stay errors";
 }
 

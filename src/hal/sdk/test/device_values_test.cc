@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Properties of the canonical devices' arithmetic, over seeded random figures.
+// Arithmetic properties of the canonical devices, with seeded random numbers.
 #include <cmath>
 #include <limits>
 #include <random>
