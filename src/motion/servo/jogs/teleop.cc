@@ -158,7 +158,7 @@ class TeleopCycle {
                         LEAST_WINDOW * (p.target < p.position ? -1.0 : 1.0);
             far_[at(i)] = {std::min(near.low, far[axis]), std::max(near.high, far[axis])};
         }
-        const bool isFound = add_pose(m_, here_, load_) && (moving_ == 0 || look_along_stop());
+        const bool isFound = add_pose(m_, here_, load_) && (moving_ == 0 || add_stop(moving_, load_));
         // Past the stop only what can be reached counts: a jog may end at the edge of the workspace.
         ahead_ = load_;
         JointLoad more = load_;
@@ -170,10 +170,10 @@ class TeleopCycle {
         return isFound;
     }
 
-    /// The load along the stop that the axes have, and one cycle past it.
-    bool look_along_stop() noexcept {
+    /// Adds the load along the stop of the axes, and one cycle past it; false without a solution there.
+    bool add_stop(std::uint32_t members, JointLoad &load) const noexcept {
         constexpr int PLACES = 3;
-        const Stop stop = stop_of(moving_);
+        const Stop stop = stop_of(members);
         bool isFound = true;
         for (int n = 1; n <= PLACES && isFound; ++n) {
             geometry::Pose pose = pose_of(stop, stop.longest_s * n / PLACES);
@@ -181,7 +181,7 @@ class TeleopCycle {
                 const int axis = load_.axes[at(i)];
                 pose[axis] += 2.0 * planner(axis).velocity * m_.period_s;
             }
-            isFound = add_pose(m_, pose, load_);
+            isFound = add_pose(m_, pose, load);
         }
         return isFound;
     }
@@ -204,8 +204,12 @@ class TeleopCycle {
             p.max_velocity = limits.velocity[at(i)];
             p.max_acceleration = limits.acceleration[at(i)];
             p.max_jerk = limits.jerk[at(i)];
+            const trajectory::MotionState begin{0, p.velocity, p.acceleration};
             p.step(m_.period_s);
-            now.velocity[at(i)] = fastest_of(p);
+            now.velocity[at(i)] = std::max(std::abs(begin.v), fastest_of(p));
+            // It is faster within the cycle where its acceleration changes sign.
+            const bool isPeak = begin.a * p.acceleration < 0;
+            now.velocity[at(i)] += isPeak ? p.max_jerk * m_.period_s * m_.period_s / 8 : 0.0;
             now.acceleration[at(i)] = std::max(now.acceleration[at(i)], std::abs(p.acceleration));
             // Not farther than it could come before: it does not pass its target.
             double next_low = p.position;
@@ -218,7 +222,8 @@ class TeleopCycle {
             hasStop = hasStop && (isNear || (isFarKnown_ && far_[at(i)].has(stop)));
         }
         Attempt out;
-        if (!hasStop || !isWithinJoints(m_, isNear ? load_ : ahead_, members, now)) {
+        if (!hasStop || !isWithinJoints(m_, isNear ? load_ : ahead_, members, now) ||
+            !isStopWithinJoints(isNear ? load_ : ahead_, members, now)) {
             out.kind = Attempt::Kind::NO_STOP;
         } else {
             out = examine_stop(members);
@@ -227,6 +232,15 @@ class TeleopCycle {
             jogs_.axis = before;
         }
         return out;
+    }
+
+    /// Other limits change the line along which several axes stop: the joints are examined there, too.
+    bool isStopWithinJoints(const JointLoad &known, std::uint32_t members, const AxisDemand &now) noexcept {
+        if (load_.count < 2) {
+            return true;
+        }
+        JointLoad along = known;
+        return add_stop(members, along) && isWithinJoints(m_, along, members, now);
     }
 
     /// The joints stay within their soft limits along the stop of the axes.
