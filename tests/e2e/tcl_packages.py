@@ -44,6 +44,8 @@ def main():
         for what, done in asked:
             lines = done.stdout.splitlines()
             expect(len(lines) == 2 and all('error other' not in line and ours in os.path.normpath(line.split()[1]) for line in lines), f'{what} finds our packages', done)
+        left = run(programs / 'halcmd', 'show', 'comp')
+        expect('no realtime process is running' in left.stderr, 'haltcl ends the realtime process that it started and left empty', left)
     return FOUND.status()
 
 

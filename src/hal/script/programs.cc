@@ -68,6 +68,7 @@ Result<ProgramStart> SystemProgramHost::start(const ProgramRequest &request) {
                     hint_for_absent(base_name(request.argv[0])));
     }
     children_.push_back(pid);
+    started_ = true;
     Result<> waited;
     if (request.wait == ProgramRequest::Wait::UNTIL_READY) {
         waited = wait_until_ready(request, pid);

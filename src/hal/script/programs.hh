@@ -51,6 +51,8 @@ class SystemProgramHost final : public ProgramHost {
     Result<> stop(const std::string &component) override;
     Result<> stop_all() override;
     Result<> wait_for_end(const std::string &component) override;
+    /// A program was started, which may become a component later.
+    bool hasStarted() const noexcept { return started_; }
 
   private:
     Result<> wait_until_ready(const ProgramRequest &request, int pid);
@@ -67,6 +69,7 @@ class SystemProgramHost final : public ProgramHost {
 
     const volatile std::sig_atomic_t *stop_;
     std::vector<int> children_;
+    bool started_ = false;
 };
 
 /// For the virtual clock: creates programs that exist as parts of this process; starts no others.

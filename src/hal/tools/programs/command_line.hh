@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostics/sink.hh"
@@ -51,8 +52,28 @@ Result<> run_standard_input(script::Session &session);
 /// Runs the HAL files of an INI file in two passes; an error unless it has [HAL]TWOPASS.
 Result<> run_two_pass_ini(script::Session &session, const ini::IniFile &ini);
 
-/// Joins the running realtime process, or starts one, which then stays.
-Result<std::unique_ptr<HostClient>> join_or_start();
+/// A realtime process that was joined, or started because none was running. One that was started here ends
+/// with this object if nothing is left in its HAL, else it continues.
+class JoinedHost {
+  public:
+    JoinedHost(std::unique_ptr<HostClient> host, bool isStartedHere)
+        : host_(std::move(host)), started_here_(isStartedHere) {}
+    ~JoinedHost();
+    JoinedHost(JoinedHost &&) = default;
+    JoinedHost &operator=(JoinedHost &&) = delete;
+
+    /// The realtime process continues, also with an empty HAL.
+    void keep() noexcept { started_here_ = false; }
+    HostClient &operator*() const noexcept { return *host_; }
+    HostClient *operator->() const noexcept { return host_.get(); }
+
+  private:
+    std::unique_ptr<HostClient> host_;
+    bool started_here_;
+};
+
+/// Joins the running realtime process, or starts one.
+Result<JoinedHost> join_or_start();
 
 /// `halcmd`: attached to the running instance. Returns the exit status.
 int halcmd(const std::vector<std::string> &arguments);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -52,10 +53,20 @@ int show_help(const CommandLine &line) {
 }
 
 /// Joins the running realtime process; a command that loads something may start a persistent one.
-Result<std::unique_ptr<HostClient>> join(const CommandLine &line) {
+/// No module, signal or thread, and no component of a process that runs.
+bool isEmpty(HostClient &host) {
+    Instance &hal = host.hal();
+    const auto modules = host.modules();
+    const bool hasModules = !modules.has_value() || !modules->empty();
+    return !hasModules && hal.signals().list().empty() && hal.threads().list().empty() &&
+           std::ranges::none_of(hal.components().list(),
+                                [](const CompInfo &comp) { return comp.pid != 0 && comp.pid != getpid(); });
+}
+
+Result<JoinedHost> join(const CommandLine &line) {
     const std::string instance = default_instance();
     if (isHostAlive(instance)) {
-        return HostClient::connect(instance);
+        return join_or_start();
     }
     const bool may_load = line.readsInput || line.words.empty() || line.words[0].starts_with("load") ||
                           line.words[0] == "source";
@@ -78,10 +89,23 @@ Result<> run(const CommandLine &line, script::Session &session) {
 
 }  // namespace
 
-Result<std::unique_ptr<HostClient>> join_or_start() {
+JoinedHost::~JoinedHost() {
+    if (host_ != nullptr && started_here_ && !host_->death() && isEmpty(*host_)) {
+        if (const Result<> ended = host_->shut_down(); !ended) {
+            language::tell("halcmd", ended.error());
+        }
+    }
+}
+
+Result<JoinedHost> join_or_start() {
     const std::string instance = default_instance();
-    return isHostAlive(instance) ? HostClient::connect(instance)
-                                 : HostClient::start(instance, MessagesTo::FILE);
+    const bool isRunning = isHostAlive(instance);
+    Result<std::unique_ptr<HostClient>> host =
+        isRunning ? HostClient::connect(instance) : HostClient::start(instance, MessagesTo::FILE);
+    if (!host) {
+        return std::unexpected(host.error());
+    }
+    return JoinedHost(std::move(*host), !isRunning);
 }
 
 int halcmd(const std::vector<std::string> &arguments) {
@@ -102,7 +126,7 @@ int halcmd(const std::vector<std::string> &arguments) {
         return fail_with(loaded.error());
     }
     line->session.ini = ini.lookup();
-    const Result<std::unique_ptr<HostClient>> host = join(*line);
+    Result<JoinedHost> host = join(*line);
     if (!host) {
         return fail_with(host.error());
     }
@@ -115,7 +139,11 @@ int halcmd(const std::vector<std::string> &arguments) {
         std::fflush(stdout);
         ::_exit(1);
     });
-    return run(*line, session) ? 0 : 1;
+    const Result<> result = run(*line, session);
+    if (programs.hasStarted()) {
+        host->keep();
+    }
+    return result ? 0 : 1;
 }
 
 }  // namespace mw::hal::tools

@@ -42,7 +42,7 @@ int haltcl(const std::vector<std::string> &given) {
     script::SessionOptions options;
     options.library = script::default_library();
     options.ini = ini.lookup();
-    const auto host = join_or_start();
+    Result<JoinedHost> host = join_or_start();
     if (!host) {
         return fail_with(host.error());
     }
@@ -56,6 +56,9 @@ int haltcl(const std::vector<std::string> &given) {
     const Result<> result = arguments.empty()
                                 ? (*tcl)->run_standard_input()
                                 : (*tcl)->run_file(arguments[0], {arguments.begin() + 1, arguments.end()});
+    if (programs.hasStarted()) {
+        host->keep();
+    }
     if (!result && !arguments.empty()) {
         output.error(result.error());
     }

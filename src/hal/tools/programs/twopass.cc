@@ -70,7 +70,7 @@ int halcmd_twopass(const std::vector<std::string> &arguments) {
     if (const auto keywords = two_pass_keywords(*ini.file()); !keywords) {
         return fail_with(keywords.error());
     }
-    const auto host = join_or_start();
+    Result<JoinedHost> host = join_or_start();
     if (!host) {
         return fail_with(host.error());
     }
@@ -78,6 +78,9 @@ int halcmd_twopass(const std::vector<std::string> &arguments) {
     script::SystemProgramHost programs((*host)->hal());
     script::Session session(**host, programs, output, line->session);
     const Result<> result = run_two_pass_ini(session, *ini.file());
+    if (programs.hasStarted()) {
+        host->keep();
+    }
     return result ? 0 : 1;
 }
 
