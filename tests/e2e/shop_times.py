@@ -117,7 +117,7 @@ def check_late_alarm(machine, mails, bodies, now_ms):
 
 
 def check_wrong_clock(database, machine, port, bodies, now_ms):
-    """A clock that is ahead: its alarm is not late, its end is seen, and somebody is told."""
+    """A clock that is ahead: its alarm is not late, the shop sees its end, and a notification is sent."""
     ahead = now_ms + WRONG_MS
     machine.bear(ahead)
     wait_for(lambda: any(body['source'] == 'Clock' for body in bodies), 'a wrong clock is reported')

@@ -82,20 +82,6 @@ double time_to_turn(const MotionState &from, const SpeedChange::Part &part) noex
     return part.duration;
 }
 
-/// Follows the change for at most `left`; returns the time that is left.
-double follow(MotionState &state, const SpeedChange &change, double left) noexcept {
-    for (const SpeedChange::Part &part : change.parts) {
-        const double t = std::min(part.duration, left);
-        state = state.after(part.jerk, t);
-        left -= t;
-        if (!(left > 0)) {
-            return 0;
-        }
-    }
-    state.a = 0;
-    return left;
-}
-
 }  // namespace
 
 SpeedChange AxisMotion::stopping() const noexcept {
@@ -106,6 +92,18 @@ SpeedChange AxisMotion::stopping() const noexcept {
     out.duration = max_acceleration > 0 ? std::abs(velocity) / max_acceleration : 0.0;
     out.distance = 0.5 * velocity * out.duration;
     return out;
+}
+
+double AxisMotion::stop_position(const SpeedChange &stop, double t) const noexcept {
+    if (t >= stop.duration) {
+        return position + stop.distance;
+    }
+    if (!(max_jerk > 0)) {
+        return position + t * (velocity - 0.5 * std::copysign(max_acceleration, velocity) * t);
+    }
+    MotionState state{0, velocity, acceleration};
+    follow(state, stop, t);
+    return position + state.x;
 }
 
 double AxisMotion::rest() const noexcept {
@@ -154,8 +152,8 @@ void AxisMotion::stop() noexcept {
     }
 }
 
-/// Where it ends follows from its limits on the way: if the place were kept, less acceleration would pass it,
-/// and a place that is requested anew in every cycle would never be braked for.
+/// The target of a stop follows from the present limits. A fixed target would be passed if the acceleration
+/// fell, and a stop that is requested in every cycle would never begin to brake.
 void AxisMotion::brake(double dt) noexcept {
     bool isOver = false;
     if (max_jerk > 0) {
@@ -196,8 +194,8 @@ void AxisMotion::step(double dt) noexcept {
         return;
     }
     max_jerk > 0 ? step_with_jerk(dt) : step_without_jerk(dt);
-    // What stands still and may not move is at its target if only rounding of the distance is left: otherwise
-    // it would never be at rest.
+    // If only rounding of the distance is left at standstill, the target is reached. With a velocity limit of
+    // 0 the motion would otherwise never end.
     constexpr double ROUNDING = 1e-7;
     const bool isStill = velocity == 0.0 && acceleration == 0.0;
     if (isStill && std::abs(target - position) <= ROUNDING * max_acceleration * dt * dt) {

@@ -41,6 +41,8 @@ class AxisMotion {
 
     /// The fastest stop from here, relative to the position; the same for a stop that has begun.
     SpeedChange stopping() const noexcept;
+    /// The position after the time `t` [s] of the stop that stopping() has returned.
+    double stop_position(const SpeedChange &stop, double t) const noexcept;
     /// Where that ends.
     double rest() const noexcept;
     /// Extends `low` to `high` by the places of its stop.

@@ -23,7 +23,7 @@ class FollowPlanner {
 
     /// At rest at `at`.
     void reset(double at) noexcept;
-    /// The place and the coordinate move by `shift`, by another zero.
+    /// The zero of the coordinate has moved: its position and the place that it follows change by `by`.
     void shift(double by) noexcept;
     /// One period towards `wanted`, a number.
     void follow(double wanted, const FollowLimits &limits, double dt) noexcept;

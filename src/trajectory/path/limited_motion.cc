@@ -32,6 +32,19 @@ SpeedChange speed_change(const MotionState &from, double to_v, double accelerati
     return out;
 }
 
+double follow(MotionState &state, const SpeedChange &change, double left) noexcept {
+    for (const SpeedChange::Part &part : change.parts) {
+        const double t = part.duration < left ? part.duration : left;
+        state = state.after(part.jerk, t);
+        left -= t;
+        if (!(left > 0)) {
+            return 0;
+        }
+    }
+    state.a = 0;
+    return left;
+}
+
 bool SpeedChangeRun::advance(MotionState &state, double dt) noexcept {
     while (part_ < SpeedChange::PARTS) {
         const SpeedChange::Part &part = change_.parts[part_];

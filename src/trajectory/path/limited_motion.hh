@@ -49,6 +49,9 @@ struct SpeedChange {
 /// within it first.
 SpeedChange speed_change(const MotionState &from, double to_v, double acceleration, double jerk) noexcept;
 
+/// Follows the change for at most `left` [s]; returns the time that is left.
+double follow(MotionState &state, const SpeedChange &change, double left) noexcept;
+
 /// The highest value from `low` to `high` for which `is_allowed` holds, where it holds for every lower one;
 /// `low` if it holds for none.
 template <class IsAllowed>

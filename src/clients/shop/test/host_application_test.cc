@@ -33,7 +33,7 @@ TEST(HostApplication, SendsNoReceiptBeyondAMissingMessage) {
     EXPECT_EQ(world.store(), std::vector<Receipt>{(Receipt{7, 2000, 3})});
 }
 
-/// It sends nothing again, so what comes is stored.
+/// A publisher without receipts does not send again, so its first message is stored.
 TEST(HostApplication, StoresAllOfANodeThatDoesNotCountItsMessages) {
     HostWorld world;
     Payload birth{.at = 1000, .seq = 0};

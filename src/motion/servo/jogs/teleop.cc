@@ -194,7 +194,7 @@ class TeleopCycle {
         bool isNear = true;
         for (int i = 0; i < load_.count; ++i) {
             const int axis = load_.axes[at(i)];
-            if ((members & bit(axis)) == 0) {
+            if (!isMember(members, i)) {
                 continue;
             }
             trajectory::AxisMotion &p = planner(axis);
@@ -222,8 +222,9 @@ class TeleopCycle {
             hasStop = hasStop && (isNear || (isFarKnown_ && far_[at(i)].has(stop)));
         }
         Attempt out;
-        if (!hasStop || !isWithinJoints(m_, isNear ? load_ : ahead_, members, now) ||
-            !isStopWithinJoints(isNear ? load_ : ahead_, members, now)) {
+        const JointLoad &known = isNear ? load_ : ahead_;
+        if (!hasStop || !isWithinJoints(m_, known, members, now) ||
+            !isStopWithinJoints(known, members, now)) {
             out.kind = Attempt::Kind::NO_STOP;
         } else {
             out = examine_stop(members);
@@ -300,29 +301,12 @@ class TeleopCycle {
     geometry::Pose pose_of(const Stop &stop, double t) const noexcept {
         geometry::Pose pose = here_;
         for (int i = 0; i < load_.count; ++i) {
-            const double way = isMember(stop.members, i) ? way_after(i, stop.axis[at(i)], t) : 0.0;
-            pose[load_.axes[at(i)]] = jog(i).planner.position + way;
+            const trajectory::AxisMotion &p = jog(i).planner;
+            pose[load_.axes[at(i)]] =
+                isMember(stop.members, i) ? p.stop_position(stop.axis[at(i)], t) : p.position;
         }
         return pose;
     }
-    /// Of its stop after the time `t`.
-    double way_after(int i, const trajectory::SpeedChange &stop, double t) const noexcept {
-        const trajectory::AxisMotion &p = jog(i).planner;
-        if (t >= stop.duration) {
-            return stop.distance;
-        }
-        if (!(p.max_jerk > 0)) {
-            return t * (p.velocity - 0.5 * std::copysign(p.max_acceleration, p.velocity) * t);
-        }
-        trajectory::MotionState state{0, p.velocity, p.acceleration};
-        for (const trajectory::SpeedChange::Part &part : stop.parts) {
-            const double span = std::min(t, part.duration);
-            state = state.after(part.jerk, span);
-            t -= span;
-        }
-        return state.x;
-    }
-
     void stop_all() noexcept {
         for (int i = 0; i < load_.count; ++i) {
             planner(load_.axes[at(i)]).stop();
