@@ -48,9 +48,9 @@ def main():
             tag, what, state, tests = match.groups()
             seen.add(tag)
             wanted = column(rows[tag]) or '-'
-            if wanted == '-' and state == 'whole':
+            if wanted == '-' and state == 'complete':
                 failures += 1
-                print(f'docs/developer/requirements.md:{number}: {tag} is called whole and no test names it')
+                print(f'docs/developer/requirements.md:{number}: {tag} is called complete and no test names it')
             if tests != wanted and '--write' not in sys.argv:
                 failures += 1
                 print(f'docs/developer/requirements.md:{number}: {tag}: the tests are now: {wanted} (--write puts it right)')
