@@ -32,7 +32,7 @@ struct alignas(64) Jog {
     double most_velocity = UNBOUNDED;  ///< limit of the override
     double brake_acceleration = 0;     ///< deceleration of a stop: a wheel cannot reduce it
     JogLease lease;
-    trajectory::AxisMotion planner;  ///< with the limits that are in force
+    trajectory::AxisMotion planner;  ///< with the current limits
 };
 
 struct Jogs {

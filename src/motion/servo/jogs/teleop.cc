@@ -312,7 +312,7 @@ class TeleopCycle {
             planner(load_.axes[at(i)]).stop();
         }
     }
-    /// The axes that move brake with the limits in force: that stop has been accepted.
+    /// The axes that move brake with the current limits: that stop has been accepted.
     void brake() noexcept {
         for (int i = 0; i < load_.count; ++i) {
             trajectory::AxisMotion &p = planner(load_.axes[at(i)]);

@@ -95,14 +95,14 @@ TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand) {
         ASSERT_GT(example.size(), 80U);
         EXPECT_NE(page.find("```cpp\n" + example + "```\n"), std::string::npos) << example;
     }
-    // The controller has the line that the new name joins, as on the page, without that name.
-    const std::string joined = ", FlipDigitalOutput> auto &c) { return motion::take(outputs_, c); },";
+    // The dispatcher has the line that the new name joins, as on the page, without that name.
+    const std::string joined = ", FlipDigitalOutput> auto &c) { return take(parts.outputs, c); },";
     const std::size_t place = page.find(joined);
     ASSERT_NE(place, std::string::npos);
     const std::size_t line = page.rfind('\n', place) + 1 + std::string("    ").size();
     const std::string standing =
         page.substr(line, place - line) + joined.substr(std::string(", FlipDigitalOutput").size());
-    EXPECT_NE(file_text("/src/motion/servo/controller_commands.cc").find(standing), std::string::npos)
+    EXPECT_NE(file_text("/src/motion/servo/command_dispatcher.cc").find(standing), std::string::npos)
         << standing;
 }
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/servo/feedback.hh"
+
+namespace mw::motion {
+
+std::uint32_t read_feedback(ControllerParts &parts, const Inputs &in) noexcept {
+    if (parts.homing.foreign != nullptr) [[unlikely]] {
+        parts.homing.foreign->read_pins();
+    }
+    const PerJoint measured = read_feedback(parts.joints, in);
+    read_feedback(parts.position, parts.model.kinematics(), measured.data(),
+                  parts.model.limits().homed.areAll);
+    return measure(parts.spindles, in);
+}
+
+}  // namespace mw::motion

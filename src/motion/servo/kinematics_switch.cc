@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/servo/kinematics_switch.hh"
+
+#include "motion/servo/motion_mode.hh"
+
+namespace mw::motion {
+namespace {
+
+/// The joints are stopped and get the pose of the new type. If the type has no pose for them, the old one
+/// stays.
+[[gnu::cold]] void switch_type(ControllerParts &parts, kinematics::TypeSwitch &types) noexcept {
+    const kinematics::Kinematics &kinematics = parts.model.kinematics();
+    geometry::Pose pose = parts.position.cmd;
+    bool isSwitched = types.switch_to(parts.types.wanted);
+    if (!isSwitched) {
+        parts.raise(FaultKind::NO_KINEMATICS_TYPE, -1, parts.types.wanted);
+    } else if (isAllHomed(parts.homing)) {
+        const PerJoint joints = commanded(parts.joints);
+        const bool isKnown = isAnswered(kinematics.forward(joints.data(), pose)) &&
+                             isWithinOneStep(kinematics, pose, joints, parts.model.joint_step_limit());
+        if (!isKnown) {
+            parts.raise(FaultKind::KINEMATICS_TYPE_WITHOUT_POSE, -1, parts.types.wanted);
+            types.switch_to(parts.types.type);
+            isSwitched = false;
+        }
+    }
+    settle(parts.types, isSwitched);
+    if (!isSwitched) {
+        return;
+    }
+    parts.position.cmd = pose;
+    parts.restart_path(pose);
+    rest_at(parts.jogs, commanded(parts.joints).data(), pose);
+    parts.publish_joint_start();
+}
+
+}  // namespace
+
+void step_kinematics_type(ControllerParts &parts, const Inputs &in) noexcept {
+    kinematics::TypeSwitch *types = parts.model.kinematics().type_switch();
+    if (types == nullptr) [[likely]] {
+        return;
+    }
+    TypeInputs now;
+    now.pin = in.kinematics_type;
+    now.isMoving = isAnythingMoving(parts) || parts.homing.isUnderWay();
+    now.isOnPath = parts.power.mode == Mode::COORD &&
+                   (now.isMoving || parts.link->queue_depth.load(std::memory_order_relaxed) != 0);
+    now.seen = parts.link->type_asks_seen.load(std::memory_order_acquire);
+    switch (step(parts.types, now)) {
+    case TypeStep::NONE:
+    case TypeStep::WAIT: return;
+    case TypeStep::NO_SUCH_TYPE: parts.raise(FaultKind::NO_KINEMATICS_TYPE, -1, in.kinematics_type); return;
+    case TypeStep::ON_PATH:
+        parts.raise(FaultKind::KINEMATICS_SWITCHED_ON_PATH, -1, in.kinematics_type);
+        parts.executor.drop();
+        parts.coord_error = true;
+        return;
+    case TypeStep::SWITCH: switch_type(parts, *types); return;
+    }
+}
+
+}  // namespace mw::motion

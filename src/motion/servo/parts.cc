@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "motion/servo/parts.hh"
+
+#include <algorithm>
+#include <memory>
+
+namespace mw::motion {
+
+ControllerParts::ControllerParts(const ControllerConfig &config, const kinematics::Kinematics &kinematics,
+                                 Channels &channels_used, PathLink &link_used) noexcept
+    : channels(&channels_used), link(&link_used), model(config, kinematics),
+      executor(link_used.store, config.period_s) {
+    joints.loaded = config.num_joints;
+    spindles.count = config.num_spindles;
+    outputs.num_digital = config.num_dio;
+    outputs.num_analog = config.num_aio;
+    homing.own.set_period(config.period_s);
+    homing.foreign = config.homing;
+    use_joints(config.num_joints);
+    jogs.axes = model.limits().axes;  // there are never more joints than now
+    const kinematics::IdentityMap *identity = kinematics.identity();
+    const int count = config.num_pose_joints();
+    for (int j = identity != nullptr ? identity->num_joints : count; j < count; ++j) {
+        joints[j].isActive = false;  // drives nothing until it is activated
+    }
+}
+
+ControllerParts::ControllerParts(const ControllerParts &other, Channels &channels_used,
+                                 PathLink &link_used) noexcept
+    : ControllerParts(other) {
+    channels = &channels_used;
+    link = &link_used;
+    std::construct_at(&executor, other.executor, link_used.store);
+}
+
+void ControllerParts::use_joints(int count) noexcept {
+    const kinematics::IdentityMap *identity = model.kinematics().identity();
+    model.use_joints(count);
+    joints.count = count;
+    jogs.num_joints = count;
+    homing.num_joints = count;
+    extra.count = model.num_extra_joints();
+    extra.first = count - extra.count;
+    homing.num_to_home =
+        identity != nullptr && extra.count == 0 ? std::min(identity->num_joints, count) : count;
+    homing.module().set_num_joints(homing.num_to_home);
+    const AxisMap &map = model.map();
+    for (int j = 0; j < count; ++j) {
+        set_axis(homing, j, map.areJointsAxes() ? map.axis_of_joint[static_cast<std::size_t>(j)] : -1);
+    }
+    publish_limits();
+}
+
+void ControllerParts::raise(FaultKind kind, int index, double value, std::uint16_t detail) noexcept {
+    Fault fault;
+    fault.kind = kind;
+    fault.index = static_cast<std::int16_t>(index);
+    fault.value = value;
+    fault.detail = detail;
+    if (const trajectory::MoveTag *tag = active_move()) {
+        fault.source = {tag->line, tag->file_index, tag->block};
+    }
+    channels->servo_faults.push(fault);  // a full ring: the first faults are the important ones
+}
+
+void ControllerParts::stop_category_0(FaultKind kind, int index, double value) noexcept {
+    if (power.isEnabled) {
+        raise(kind, index, value);
+    }
+    switch_off();
+}
+
+void ControllerParts::stop_category_1(FaultKind kind, int index, double value) noexcept {
+    if (begin_stop(power)) {
+        raise(kind, index, value);
+        brake();
+        stop(offsets);
+    }
+}
+
+void ControllerParts::brake() noexcept {
+    abort(homing, homing::event::ABORT);
+    executor.drop();
+    stop(jogs);
+    stop(alignment);
+    hold(extra);
+}
+
+void ControllerParts::switch_off() noexcept {
+    executor.stop_now();
+    stop_at_once(offsets);
+    forget(alignment);
+    motion::switch_off(power);
+    release(holds);
+    motion::switch_off(joints);
+    motion::switch_off(indexers);
+    forget_sources(jogs);
+    motion::switch_off(homing, model.settings());
+    motion::switch_off(spindles);
+    publish_limits();
+    leave_unknown_pose();
+}
+
+void ControllerParts::leave_unknown_pose() noexcept {
+    const bool isKnown = model.kinematics().kind() == kinematics::Kind::IDENTITY || isAllHomed(homing);
+    if (!power.isEnabled && !isKnown) {
+        power.mode = Mode::FREE;
+    }
+}
+
+const trajectory::MoveTag *ControllerParts::active_move() const noexcept {
+    const trajectory::Sequence move = executor.output().move;
+    return power.mode == Mode::COORD && move != 0 ? &link->store.move(move) : nullptr;
+}
+
+CommandResult ControllerParts::align_joints() noexcept {
+    const kinematics::Kinematics &kinematics = model.kinematics();
+    const bool areJointsAxes = model.map().areJointsAxes();
+    const kinematics::Kind kind = kinematics.kind();
+    const bool isPoseKnown =
+        areJointsAxes || kind != kinematics::Kind::BOTH ||
+        isWithinOneStep(kinematics, position.cmd, commanded(joints), model.joint_step_limit());
+    if (!isPoseKnown) {
+        return {Reason::POSE_UNKNOWN};
+    }
+    PerJoint targets = commanded(joints);
+    const bool hasInverse = kind == kinematics::Kind::IDENTITY || kind == kinematics::Kind::BOTH;
+    if (!hasInverse || !isAnswered(kinematics.inverse(position.cmd, targets.data()))) {
+        return {};
+    }
+    const int misaligned = areJointsAxes ? find_misaligned_joint(joints, targets, model.settings()) : -1;
+    if (misaligned >= 0) {
+        return result_of(misaligned, Reason::SIDE_APART);
+    }
+    begin(alignment, joints, targets, model.limits());
+    return {};
+}
+
+void ControllerParts::restart_path(const geometry::Pose &pose) noexcept {
+    executor.drop();
+    executor.set_position(pose);
+    retracing.retrace.clear();
+}
+
+void ControllerParts::publish_joint_start() noexcept {
+    if (model.map().areJointsAxes()) {
+        return;
+    }
+    joint_start.joints = commanded(joints);
+    ++joint_start.count;
+    publish_limits();
+}
+
+void ControllerParts::publish_limits() noexcept {
+    model.fold({homed_mask(homing), isAllHomed(homing)});
+    const FoldedLimits &limits = model.limits();
+    configure(offsets, limits, model.map());
+    indexers.mask = limits.locks;
+    PathLimits out;
+    out.offset_axes = offsets.axes;
+    out.indexer = limits.indexer;
+    out.limits = limits.path;
+    out.low = limits.low;
+    out.high = limits.high;
+    out.axes = limits.axes;
+    out.joints = limits.path_joints;
+    out.shared = offsets.shared;
+    out.standing = joint_start.joints;
+    out.side = model.kinematics().side(position.cmd);
+    out.position_changes = joint_start.count;
+    out.corner_scale = model.settings().get(Parameter::TRAJ_CORNER_SCALE);
+    out.areTolerancesAdded = model.settings().isSet(Parameter::TRAJ_ADDED_TOLERANCES);
+    link->limits.write(out);
+}
+
+}  // namespace mw::motion

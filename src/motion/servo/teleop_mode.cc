@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Teleop mode: each axis follows its own jog, and the joints follow the pose.
+#include <bit>
+
+#include "motion/servo/cartesian_drive.hh"
+#include "motion/servo/jogs/teleop.hh"
+#include "motion/servo/motion_mode.hh"
+#include "motion/servo/probe_stage.hh"
+
+namespace mw::motion {
+namespace {
+
+/// Bit per axis that one of the closed locks holds.
+std::uint32_t locked_axes(const FoldedLimits &limits, std::uint32_t locked) noexcept {
+    std::uint32_t axes = 0;
+    for (int i = 0; i < MAX_AXES && locked != 0; ++i) {
+        axes |= (limits.axis_locks[static_cast<std::size_t>(i)] & locked) != 0 ? 1U << i : 0U;
+    }
+    return axes;
+}
+
+/// Where joints are not axes, the joints limit what the axes do together.
+void step_axes_together(ControllerParts &parts, std::uint32_t locked) noexcept {
+    const MachineModel &model = parts.model;
+    PerJoint joint_positions = commanded(parts.joints);
+    trajectory::JointLimits joint_limits = model.limits().path_joints;
+    take_off(parts.offsets, joint_positions, joint_limits);
+    const TeleopMachine machine{model.kinematics(),
+                                model.limits(),
+                                joint_limits,
+                                joint_positions,
+                                model.num_pose_joints(),
+                                parts.holds.jog_scale(),
+                                model.period_s(),
+                                model.kinematics().side(parts.position.cmd),
+                                locked};
+    const TeleopStop stopped = step_teleop(parts.jogs, machine);
+    if (stopped.isNew && stopped.joint >= 0) {
+        parts.raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint);
+    } else if (stopped.isNew) {
+        parts.raise(FaultKind::JOG_UNREACHABLE, model.num_pose_joints());
+    }
+}
+
+/// Moves the axes for one cycle and returns their pose.
+geometry::Pose jogged_pose(ControllerParts &parts) noexcept {
+    const FoldedLimits &limits = parts.model.limits();
+    const bool areJointsAxes = parts.model.map().areJointsAxes();
+    const std::uint32_t locked = locked_axes(limits, held(parts.indexers));
+    if (!areJointsAxes) {
+        step_axes_together(parts, locked);
+    }
+    geometry::Pose pose;
+    for (int i = 0; i < MAX_AXES; ++i) {
+        Jog &jog = parts.jogs.at({false, i});
+        if (areJointsAxes) {
+            limit_axis(jog, limits.jog({false, i}).velocity, parts.holds.jog_scale());
+            if ((locked & 1U << i) == 0) {
+                jog.planner.step(parts.model.period_s());
+            }
+        }
+        pose[i] = jog.planner.position;
+    }
+    return pose;
+}
+
+/// Range that the jogs may reach without external offsets.
+TravelRange jogged_range(const Jogs &jogs, const geometry::Pose &pose, const SharedJoints &shared) noexcept {
+    TravelRange out{{pose, pose}, shared.at(pose)};
+    PoseRange stops{pose, pose};
+    for (int i = 0; i < MAX_AXES; ++i) {
+        jogs.at({false, i}).planner.add_reach(out.axes.low[i], out.axes.high[i]);
+        // A jog may need a longer distance to stop when the joints allow it less.
+        constexpr double MARGIN = 1.2;
+        stops.low[i] += MARGIN * (out.axes.low[i] - pose[i]);
+        stops.high[i] += MARGIN * (out.axes.high[i] - pose[i]);
+    }
+    out.joints.include(shared.within(stops));
+    return out;
+}
+
+}  // namespace
+
+CommandResult TeleopMode::enter(ControllerParts &parts) const noexcept {
+    return parts.align_joints();
+}
+
+void TeleopMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
+    if (parts.alignment.isMisaligned()) [[unlikely]] {
+        step_alignment(parts, in);
+        return;
+    }
+    parts.executor.step(parts.cycle);
+    geometry::Pose pose = jogged_pose(parts);
+    if (parts.offsets.axes != 0) [[unlikely]] {
+        pose = add_offsets(parts, in, pose, jogged_range(parts.jogs, pose, parts.offsets.shared));
+    }
+    check_probe(parts, in);
+    command_pose(parts, pose);
+    fire_outputs(parts);
+}
+
+bool TeleopMode::isJogging(const ControllerParts &parts) const noexcept {
+    return !areAxesAtRest(parts.jogs);
+}
+
+JogGroup TeleopMode::jog_group(const ControllerParts &) const noexcept {
+    return {false, MAX_AXES};
+}
+
+std::uint32_t TeleopMode::locks_wanted(const ControllerParts &parts) const noexcept {
+    std::uint32_t wanted = 0;
+    for (std::uint32_t left = parts.jogs.axes; left != 0; left &= left - 1) {
+        const JogTarget axis{false, std::countr_zero(left)};
+        wanted |= parts.jogs.at(axis).planner.isAtRest() ? 0U : parts.model.limits().locks_of(axis);
+    }
+    return wanted;
+}
+
+}  // namespace mw::motion
