@@ -12,7 +12,7 @@ void step_alignment(ControllerParts &parts, const Inputs &in) noexcept {
                           !areAxesAtRest(parts.jogs) || areAsked(parts.offsets, in.axis_offset);
     const AlignmentStep result = step(parts.alignment, parts.joints, isWanted, parts.model.period_s());
     if (result == AlignmentStep::STOPPED) {
-        parts.power.mode = Mode::FREE;  // each joint moves by itself
+        parts.power.set_mode(Mode::FREE);  // each joint moves by itself
         rest_at(parts.jogs, commanded(parts.joints).data(), parts.programmed_pose());
     }
 }
@@ -65,7 +65,7 @@ void fire_outputs(ControllerParts &parts) noexcept {
         if (event == nullptr) [[likely]] {
             return;
         }
-        fire(parts.outputs, *event, executor.snapshot().isDropping);
+        parts.outputs.fire(*event, executor.snapshot().isDropping);
         executor.drop_event();
     }
 }

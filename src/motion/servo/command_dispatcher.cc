@@ -43,7 +43,7 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
 /// Every command has a handler here; a missing one does not compile.
 [[gnu::cold]] CommandResult dispatch(ControllerParts &parts, SafetyMonitor &safety, const Inputs &in,
                                      const CommandBody &body) noexcept {
-    const bool isEnabled = parts.power.isEnabled;
+    const bool isEnabled = parts.power.isEnabled();
     const Overloaded handlers{
         [&](const OneOf<Abort, SetMode, SetParameter, SetJointActive, Unhome> auto &c) {
             return take(parts, c);
@@ -55,17 +55,17 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
         },
         [&](const OneOf<SetWatchdog, Heartbeat> auto &c) { return safety.take(c); },
         [&](const OneOf<SetAmplifier, LoadCompensation> auto &c) { return take(parts.joints, c, isEnabled); },
-        [&](const OneOf<Pause, Resume, StepOnce, SetMaxVelocity> auto &c) { return take(parts.holds, c); },
+        [&](const OneOf<Pause, Resume, StepOnce, SetMaxVelocity> auto &c) { return parts.holds.take(c); },
         [&](const SetReverse &c) {
-            const bool isPathRecorded = parts.power.mode == Mode::COORD && parts.retracing.retrace.hasWay();
-            return take(parts.holds, c, isPathRecorded);
+            const bool isPathRecorded = parts.power.mode() == Mode::COORD && parts.retracing.retrace.hasWay();
+            return parts.holds.take(c, isPathRecorded);
         },
         [&](const SetScale &c) {
             const double max_feed_scale = parts.model.settings().get(Parameter::MAX_FEED_SCALE);
-            return c.what == Scale::SPINDLE ? take(parts.spindles, c) : take(parts.holds, c, max_feed_scale);
+            return c.what == Scale::SPINDLE ? take(parts.spindles, c) : parts.holds.take(c, max_feed_scale);
         },
         [&](const SetSwitch &c) {
-            return c.what == Switch::SPINDLE_OVERRIDE ? take(parts.spindles, c) : take(parts.holds, c);
+            return c.what == Switch::SPINDLE_OVERRIDE ? take(parts.spindles, c) : parts.holds.take(c);
         },
         [&](const OneOf<JogContinuous, JogIncremental, JogAbsolute> auto &c) {
             return take(parts.jogs, c, jog_situation(parts, in, c.target));
@@ -74,9 +74,9 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
         [&](const SetTeleopVector &c) { return take(parts, c, in); },
         [&](const OneOf<SpindleOn, SpindleOrient> auto &c) { return take(parts.spindles, c, isEnabled); },
         [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return take(parts.spindles, c); },
-        [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return take(parts.outputs, c); },
+        [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return parts.outputs.take(c); },
         [](const SetToolOffset &c) { return check(c); },  // it only limits reverse run
-        [&](const ClearProbeFlag &c) { return take(parts.probe, c); },
+        [&](const ClearProbeFlag &c) { return parts.probe.take(c); },
     };
     return std::visit(handlers, body);
 }

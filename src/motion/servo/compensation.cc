@@ -31,7 +31,7 @@ void command_extra_joints(ControllerParts &parts, const Inputs &in) noexcept {
 }
 
 void command_motors(ControllerParts &parts) noexcept {
-    const bool isEnabled = parts.power.isEnabled;
+    const bool isEnabled = parts.power.isEnabled();
     for (std::uint32_t off = output(parts.joints, parts.model.settings(), isEnabled, parts.model.period_s());
          off != 0; off &= off - 1) {
         const int j = std::countr_zero(off);

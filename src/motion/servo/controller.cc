@@ -37,7 +37,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     apply_holds(parts_, in);
     step_kinematics_type(parts_, in);
     follow_spindles(parts_);
-    if (parts_.power.isEnabled) [[likely]] {
+    if (parts_.power.isEnabled()) [[likely]] {
         command_joints(in);
     } else {
         parts_.executor.step(parts_.cycle);
@@ -48,16 +48,16 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
         parts_.homing.foreign->write_pins();
     }
     write_status(parts_, {in, dispatcher_.epoch(), dispatcher_.last_id(), safety_.isTaskLost()}, out);
-    parts_.probe.wasClosed = in.isProbeClosed;
+    parts_.probe.end_cycle(in.isProbeClosed);
 }
 
 void Controller::command_joints(const Inputs &in) noexcept {
     step_homing(parts_, in);
     step_jogs(parts_, in);
-    if (parts_.indexers.mask != 0) [[unlikely]] {
+    if (!parts_.indexers.isEmpty()) [[unlikely]] {
         step_indexers(parts_, in);
     }
-    motion_mode(parts_.power.mode).step(parts_, in);
+    motion_mode(parts_.power.mode()).step(parts_, in);
     if (parts_.extra.count > 0) [[unlikely]] {
         command_extra_joints(parts_, in);
     }

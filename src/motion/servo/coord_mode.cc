@@ -30,11 +30,11 @@ geometry::Pose path_pose(ControllerParts &parts) noexcept {
     // A path that has ended keeps its position: a program that waits relies on it.
     const bool isPathHeld = executor.isAtRest() && !executor.isEmpty();
     const RetraceInputs in{executor.snapshot().drops,
-                           holds.isReverseWanted,
-                           holds.isStandingWanted,
-                           parts.power.isStopping,
+                           holds.isReverseWanted(),
+                           holds.isHoldWanted(),
+                           parts.power.isStopping(),
                            isPathHeld,
-                           holds.reverse_rate};
+                           holds.reverse_rate()};
     const RetraceLimits limits = parts.model.retrace_limits();
     const double t = limits.period_s;
     for (int j = 0; j < limits.joints && parts.retracing.retrace.isMoving(); ++j) {
@@ -77,9 +77,9 @@ void update_recorded_path(ControllerParts &parts, const geometry::Pose &pose) no
     }
     // Reverse run does not pass a tapped hole or a thread without the spindle in step, nor a lock.
     const bool isOneWay = parts.executor.output().tap.spindle >= 0 || parts.executor.locked_spindle() >= 0 ||
-                          busy(parts.indexers) != 0;
+                          parts.indexers.busy() != 0;
     // External offsets are not part of the recorded path, so it is recorded only where it is needed.
-    const bool isWanted = parts.holds.isAdaptiveFeedEnabled || parts.offsets.axes == 0;
+    const bool isWanted = parts.holds.isAdaptiveFeedEnabled() || parts.offsets.axes == 0;
     if (isWanted && !isOneWay) {
         record_path(parts, pose);
     } else {
@@ -105,7 +105,7 @@ void CoordMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
     }
     check_probe(parts, in);
     command_pose(parts, target);
-    if (parts.power.mode == Mode::COORD) [[likely]] {  // a stop may have left it
+    if (parts.power.mode() == Mode::COORD) [[likely]] {  // a stop may have left it
         const bool areJointsAxes = parts.model.map().areJointsAxes();
         if (!areJointsAxes && hasDropped(parts.joint_start, parts.executor.snapshot())) [[unlikely]] {
             parts.publish_joint_start();

@@ -15,7 +15,7 @@ void FreeMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
     parts.executor.step(parts.cycle);
     const FoldedLimits &limits = parts.model.limits();
     const double period_s = parts.model.period_s();
-    const std::uint32_t locked = held(parts.indexers);
+    const std::uint32_t locked = parts.indexers.held();
     for (int j = 0; j < parts.model.num_joints(); ++j) {
         const auto n = static_cast<std::size_t>(j);
         if (parts.extra.joint[n].state != Following::NONE) {

@@ -39,8 +39,8 @@ geometry::Pose home_pose(const Settings &settings) noexcept {
 
 [[gnu::cold]] void start_homing(ControllerParts &parts, const Inputs &in) noexcept {
     hold(parts.extra);
-    const bool isMoving = isAnythingMoving(parts) || !areAtRest(parts.extra) || busy(parts.indexers) != 0;
-    const HomeConditions conditions{true, parts.power.mode, in.isHomingInhibited, isMoving,
+    const bool isMoving = isAnythingMoving(parts) || !areAtRest(parts.extra) || parts.indexers.busy() != 0;
+    const HomeConditions conditions{true, parts.power.mode(), in.isHomingInhibited, isMoving,
                                     inactive_joints(parts.joints)};
     const homing::Failure why = begin_due(parts.homing, conditions);
     if (why != homing::Failure::NONE) {
@@ -101,7 +101,7 @@ void step_homing(ControllerParts &parts, const Inputs &in) noexcept {
     const MachineModel &model = parts.model;
     const bool isOtherMap = parts.offsets.shared.joints != 0 && !model.map().isAsIn(model.kinematics());
     if (model.limits().homed.joints != homed_mask(homing) || isOtherMap) [[unlikely]] {
-        if (parts.power.mode == Mode::FREE && isAllHomed(homing)) {
+        if (parts.power.mode() == Mode::FREE && isAllHomed(homing)) {
             // In other modes the pose commands the joints.
             find_again(parts.position, model.kinematics(), commanded(parts.joints).data(),
                        home_pose(model.settings()));

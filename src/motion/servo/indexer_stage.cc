@@ -10,13 +10,13 @@ void step_indexers(ControllerParts &parts, const Inputs &in) noexcept {
     IndexerInputs now;
     now.period_s = parts.model.period_s();
     now.unlocked = unlocked_pins(in);
-    now.wanted = motion_mode(parts.power.mode).locks_wanted(parts);
+    now.wanted = motion_mode(parts.power.mode()).locks_wanted(parts);
     for (int j = 0; j < parts.model.num_joints(); ++j) {
         const bool isHoming = homing.isHoming(j) || homing.isUnlockWanted(j);
         now.homing |= isHoming ? 1U << j : 0U;
         now.moving |= parts.joints[j].vel_cmd != 0.0 ? 1U << j : 0U;
     }
-    const IndexerEvent event = step(parts.indexers, now);
+    const IndexerEvent event = parts.indexers.step(now);
     switch (event.fault) {
     case LockFault::NONE: return;
     case LockFault::LOCKED_IN_MOVE:

@@ -10,7 +10,7 @@ namespace {
 bool isBesideIndexer(const ControllerParts &parts, const JogTarget &target) noexcept {
     const FoldedLimits &limits = parts.model.limits();
     const std::uint32_t own = limits.locks_of(target);
-    bool is = (busy(parts.indexers) & ~own) != 0;
+    bool is = (parts.indexers.busy() & ~own) != 0;
     const int count = target.isJoint ? parts.jogs.num_joints : MAX_AXES;
     for (int i = 0; i < count; ++i) {
         const JogTarget other{target.isJoint, i};
@@ -43,7 +43,7 @@ JogSituation jog_situation(const ControllerParts &parts, const Inputs &in, const
     const AxisMap &map = parts.model.map();
     s.time_ns = in.time_ns;
     s.isReady = parts.power.isReady();
-    s.mode = parts.power.mode;
+    s.mode = parts.power.mode();
     s.isHoming = parts.homing.isUnderWay();
     s.isInhibited = in.isJogInhibited || in.isJogStopped || in.isJogStoppedNow;
     s.isDriven = target.isJoint && (parts.extra.mask() & limits.homed.joints & 1U << target.index) != 0;
@@ -57,7 +57,7 @@ JogSituation jog_situation(const ControllerParts &parts, const Inputs &in, const
     }
     s.isLocked = limits.locks_of(target) != 0;
     s.isShared = !target.isJoint && !map.areJointsAxes();
-    s.isBesideIndexer = parts.indexers.mask != 0 && isBesideIndexer(parts, target);
+    s.isBesideIndexer = !parts.indexers.isEmpty() && isBesideIndexer(parts, target);
     s.most = limits.jog(target);
     s.range = range_of(parts, target);
     return s;
@@ -84,7 +84,7 @@ void step_jogs(ControllerParts &parts, const Inputs &in) noexcept {
     } else if (in.isJogStopped && !parts.homing.isActive()) [[unlikely]] {
         stop(jogs);
     }
-    const JogGroup group = motion_mode(parts.power.mode).jog_group(parts);
+    const JogGroup group = motion_mode(parts.power.mode()).jog_group(parts);
     for (int i = 0; i < group.count; ++i) {
         const JogTarget target{group.areJoints, i};
         const auto n = static_cast<std::size_t>(i);

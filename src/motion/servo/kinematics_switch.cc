@@ -11,20 +11,20 @@ namespace {
 [[gnu::cold]] void switch_type(ControllerParts &parts, kinematics::TypeSwitch &types) noexcept {
     const kinematics::Kinematics &kinematics = parts.model.kinematics();
     geometry::Pose pose = parts.position.cmd;
-    bool isSwitched = types.switch_to(parts.types.wanted);
+    bool isSwitched = types.switch_to(parts.types.wanted());
     if (!isSwitched) {
-        parts.raise(FaultKind::NO_KINEMATICS_TYPE, -1, parts.types.wanted);
+        parts.raise(FaultKind::NO_KINEMATICS_TYPE, -1, parts.types.wanted());
     } else if (isAllHomed(parts.homing)) {
         const PerJoint joints = commanded(parts.joints);
         const bool isKnown = isAnswered(kinematics.forward(joints.data(), pose)) &&
                              isWithinOneStep(kinematics, pose, joints, parts.model.joint_step_limit());
         if (!isKnown) {
-            parts.raise(FaultKind::KINEMATICS_TYPE_WITHOUT_POSE, -1, parts.types.wanted);
-            types.switch_to(parts.types.type);
+            parts.raise(FaultKind::KINEMATICS_TYPE_WITHOUT_POSE, -1, parts.types.wanted());
+            types.switch_to(parts.types.active());
             isSwitched = false;
         }
     }
-    settle(parts.types, isSwitched);
+    parts.types.settle(isSwitched);
     if (!isSwitched) {
         return;
     }
@@ -44,10 +44,10 @@ void step_kinematics_type(ControllerParts &parts, const Inputs &in) noexcept {
     TypeInputs now;
     now.pin = in.kinematics_type;
     now.isMoving = isAnythingMoving(parts) || parts.homing.isUnderWay();
-    now.isOnPath = parts.power.mode == Mode::COORD &&
+    now.isOnPath = parts.power.mode() == Mode::COORD &&
                    (now.isMoving || parts.link->queue_depth.load(std::memory_order_relaxed) != 0);
     now.seen = parts.link->type_asks_seen.load(std::memory_order_acquire);
-    switch (step(parts.types, now)) {
+    switch (parts.types.step(now)) {
     case TypeStep::NONE:
     case TypeStep::WAIT: return;
     case TypeStep::NO_SUCH_TYPE: parts.raise(FaultKind::NO_KINEMATICS_TYPE, -1, in.kinematics_type); return;

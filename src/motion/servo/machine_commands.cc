@@ -35,24 +35,24 @@ CommandResult take(ControllerParts &parts, const Enable &, const Inputs &in) noe
     if (!in.isEnableOn) {
         return {Reason::EXTERNAL_ENABLE_OFF};
     }
-    if (parts.power.isEnabled) {
-        return {parts.power.isStopping ? Reason::MOVING : Reason::NONE};
+    if (parts.power.isEnabled()) {
+        return {parts.power.isStopping() ? Reason::MOVING : Reason::NONE};
     }
     const CommandResult start = check_start(parts.joints, in, parts.jogs.areLimitsOverridden);
     if (start.reason != Reason::NONE) {
         return start;
     }
-    const CommandResult mode = motion_mode(parts.power.mode).enter(parts);
+    const CommandResult mode = motion_mode(parts.power.mode()).enter(parts);
     if (mode.reason != Reason::NONE) {
         const bool isMisaligned = mode.reason == Reason::SIDE_APART;
         parts.raise(isMisaligned ? FaultKind::SIDE_APART : FaultKind::POSE_UNKNOWN, mode.index);
-        parts.power.mode = Mode::FREE;  // each joint moves by itself
+        parts.power.set_mode(Mode::FREE);  // each joint moves by itself
     }
-    switch_on(parts.power);
+    parts.power.switch_on();
     switch_on(parts.joints);
     start_at_zero(parts.offsets, in);
     start_at(parts.jogs, commanded(parts.joints).data(), parts.position.cmd, in);
-    switch_on(parts.indexers, {0, 0, unlocked_pins(in), 0, parts.model.period_s()});
+    parts.indexers.switch_on(unlocked_pins(in));
     switch_on(parts.extra, extra_inputs(parts, in));
     parts.coord_error = false;
     parts.restart_path(parts.position.cmd);
@@ -64,10 +64,10 @@ CommandResult take(ControllerParts &parts, const SetMode &command) noexcept {
     const Mode mode = command.mode;
     const bool isOffsetMoving = mode == Mode::FREE && !areAtRest(parts.offsets);
     const ModeConditions conditions{
-        parts.homing.isUnderWay(), isAnythingMoving(parts) || isOffsetMoving || busy(parts.indexers) != 0,
+        parts.homing.isUnderWay(), isAnythingMoving(parts) || isOffsetMoving || parts.indexers.busy() != 0,
         parts.model.kinematics().kind() != kinematics::Kind::IDENTITY, isAllHomed(parts.homing)};
-    const Reason reason = check_mode(parts.power, mode, conditions);
-    if (reason != Reason::NONE || mode == parts.power.mode) {
+    const Reason reason = parts.power.check_mode(mode, conditions);
+    if (reason != Reason::NONE || mode == parts.power.mode()) {
         return {reason};
     }
     const CommandResult result = motion_mode(mode).enter(parts);
@@ -78,8 +78,8 @@ CommandResult take(ControllerParts &parts, const SetMode &command) noexcept {
     parts.restart_path(pose);
     parts.executor.hold(false);
     rest_at(parts.jogs, commanded(parts.joints).data(), pose);
-    release(parts.holds);
-    parts.power.mode = mode;
+    parts.holds.release();
+    parts.power.set_mode(mode);
     parts.publish_joint_start();
     return {};
 }
@@ -104,7 +104,7 @@ CommandResult take(ControllerParts &parts, const SetNumJoints &command, const In
     const kinematics::IdentityMap *identity = parts.model.kinematics().identity();
     const int least = identity != nullptr ? std::min(identity->num_joints, loaded) : 1;
     const int needed = parts.extra.count > 0 ? loaded : least;  // extra joints are the last ones
-    if (parts.power.isEnabled) {
+    if (parts.power.isEnabled()) {
         return {Reason::SWITCHED_ON};
     }
     if (count > loaded) {
@@ -123,7 +123,7 @@ CommandResult take(ControllerParts &parts, const SetNumJoints &command, const In
 }
 
 CommandResult take(ControllerParts &parts, const SetJointActive &command) noexcept {
-    const bool areAlone = !parts.power.isEnabled || parts.power.mode == Mode::FREE;
+    const bool areAlone = !parts.power.isEnabled() || parts.power.mode() == Mode::FREE;
     const CommandResult result =
         take(parts.joints, command, {isAnythingMoving(parts), parts.homing.isUnderWay(), areAlone});
     if (areAlone) {  // the pose is that of all joints from here, also for the next command
@@ -135,7 +135,7 @@ CommandResult take(ControllerParts &parts, const SetJointActive &command) noexce
 }
 
 CommandResult take(ControllerParts &parts, const Home &command, const Inputs &in) noexcept {
-    const HomeConditions conditions{parts.power.isReady(), parts.power.mode, in.isHomingInhibited, false,
+    const HomeConditions conditions{parts.power.isReady(), parts.power.mode(), in.isHomingInhibited, false,
                                     inactive_joints(parts.joints)};
     const CommandResult result = take(parts.homing, command, conditions);
     if (result.reason == Reason::NONE) {
@@ -145,9 +145,9 @@ CommandResult take(ControllerParts &parts, const Home &command, const Inputs &in
 }
 
 CommandResult take(ControllerParts &parts, const Unhome &command) noexcept {
-    HomeConditions conditions{parts.power.isReady(), parts.power.mode, false, isAnythingMoving(parts)};
+    HomeConditions conditions{parts.power.isReady(), parts.power.mode(), false, isAnythingMoving(parts)};
     conditions.kept_while_on =
-        parts.power.isEnabled ? parts.extra.mask() & parts.model.limits().homed.joints : 0;
+        parts.power.isEnabled() ? parts.extra.mask() & parts.model.limits().homed.joints : 0;
     const CommandResult result = take(parts.homing, command, conditions, parts.model.settings());
     if (result.reason == Reason::NONE) {
         parts.publish_limits();
@@ -158,7 +158,7 @@ CommandResult take(ControllerParts &parts, const Unhome &command) noexcept {
 
 CommandResult take(ControllerParts &parts, const Abort &) noexcept {
     parts.brake();
-    release(parts.holds);
+    parts.holds.release();
     parts.coord_error = false;
     return {};
 }

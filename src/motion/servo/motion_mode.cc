@@ -22,7 +22,7 @@ const MotionMode &motion_mode(Mode mode) noexcept {
 bool isAnythingMoving(const ControllerParts &parts) noexcept {
     const bool isOnPath =
         !parts.executor.isAtRest() || parts.retracing.retrace.isMoving() || parts.alignment.areUnderWay();
-    return isOnPath || motion_mode(parts.power.mode).isJogging(parts);
+    return isOnPath || motion_mode(parts.power.mode()).isJogging(parts);
 }
 
 }  // namespace mw::motion

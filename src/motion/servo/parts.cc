@@ -9,11 +9,9 @@ namespace mw::motion {
 ControllerParts::ControllerParts(const ControllerConfig &config, const kinematics::Kinematics &kinematics,
                                  Channels &channels_used, PathLink &link_used) noexcept
     : channels(&channels_used), link(&link_used), model(config, kinematics),
-      executor(link_used.store, config.period_s) {
+      outputs(config.num_dio, config.num_aio), executor(link_used.store, config.period_s) {
     joints.loaded = config.num_joints;
     spindles.count = config.num_spindles;
-    outputs.num_digital = config.num_dio;
-    outputs.num_analog = config.num_aio;
     homing.own.set_period(config.period_s);
     homing.foreign = config.homing;
     use_joints(config.num_joints);
@@ -64,14 +62,14 @@ void ControllerParts::raise(FaultKind kind, int index, double value, std::uint16
 }
 
 void ControllerParts::stop_category_0(FaultKind kind, int index, double value) noexcept {
-    if (power.isEnabled) {
+    if (power.isEnabled()) {
         raise(kind, index, value);
     }
     switch_off();
 }
 
 void ControllerParts::stop_category_1(FaultKind kind, int index, double value) noexcept {
-    if (begin_stop(power)) {
+    if (power.begin_stop()) {
         raise(kind, index, value);
         brake();
         stop(offsets);
@@ -90,10 +88,10 @@ void ControllerParts::switch_off() noexcept {
     executor.stop_now();
     stop_at_once(offsets);
     forget(alignment);
-    motion::switch_off(power);
-    release(holds);
+    power.switch_off();
+    holds.release();
     motion::switch_off(joints);
-    motion::switch_off(indexers);
+    indexers.switch_off();
     forget_sources(jogs);
     motion::switch_off(homing, model.settings());
     motion::switch_off(spindles);
@@ -103,14 +101,14 @@ void ControllerParts::switch_off() noexcept {
 
 void ControllerParts::leave_unknown_pose() noexcept {
     const bool isKnown = model.kinematics().kind() == kinematics::Kind::IDENTITY || isAllHomed(homing);
-    if (!power.isEnabled && !isKnown) {
-        power.mode = Mode::FREE;
+    if (!power.isEnabled() && !isKnown) {
+        power.set_mode(Mode::FREE);
     }
 }
 
 const trajectory::MoveTag *ControllerParts::active_move() const noexcept {
     const trajectory::Sequence move = executor.output().move;
-    return power.mode == Mode::COORD && move != 0 ? &link->store.move(move) : nullptr;
+    return power.mode() == Mode::COORD && move != 0 ? &link->store.move(move) : nullptr;
 }
 
 CommandResult ControllerParts::align_joints() noexcept {
@@ -155,7 +153,7 @@ void ControllerParts::publish_limits() noexcept {
     model.fold({homed_mask(homing), isAllHomed(homing)});
     const FoldedLimits &limits = model.limits();
     configure(offsets, limits, model.map());
-    indexers.mask = limits.locks;
+    indexers.set_joints(limits.locks);
     PathLimits out;
     out.offset_axes = offsets.axes;
     out.indexer = limits.indexer;

@@ -5,11 +5,11 @@ namespace mw::motion {
 
 void apply_holds(ControllerParts &parts, const Inputs &in) noexcept {
     Holds &holds = parts.holds;
-    step(holds, {in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
-                 parts.link->steps_done.load(std::memory_order_acquire)});
-    const bool isReversing = holds.isReverseWanted || parts.retracing.retrace.isAway();
-    parts.executor.hold(holds.isStandingWanted || parts.alignment.isMisaligned() ||
-                        (parts.power.mode == Mode::COORD && isReversing));
+    holds.step({in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
+                parts.link->steps_done.load(std::memory_order_acquire)});
+    const bool isReversing = holds.isReverseWanted() || parts.retracing.retrace.isAway();
+    parts.executor.hold(holds.isHoldWanted() || parts.alignment.isMisaligned() ||
+                        (parts.power.mode() == Mode::COORD && isReversing));
 }
 
 void follow_spindles(ControllerParts &parts) noexcept {

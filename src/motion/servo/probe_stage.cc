@@ -7,7 +7,7 @@ namespace mw::motion {
 
 void check_probe(ControllerParts &parts, const Inputs &in) noexcept {
     trajectory::Executor &executor = parts.executor;
-    const bool isOnPath = parts.power.mode == Mode::COORD;
+    const bool isOnPath = parts.power.mode() == Mode::COORD;
     const trajectory::ExecutorOutput &path = executor.output();
     const bool isProbing = isOnPath && path.isOnProbe && path.isMoving;
     ProbeInputs probe;
@@ -15,14 +15,14 @@ void check_probe(ControllerParts &parts, const Inputs &in) noexcept {
     if (isProbing) [[unlikely]] {
         probe.probing_move = path.move;
         probe.isAway = parts.link->store.move(path.move).isProbeAway;
-    } else if (in.isProbeClosed && !parts.probe.wasClosed) [[unlikely]] {
+    } else if (in.isProbeClosed && !parts.probe.wasClosed()) [[unlikely]] {
         const Parameter ignored = parts.homing.isActive() ? Parameter::TRAJ_NO_PROBE_HOME_ERROR
                                                           : Parameter::TRAJ_NO_PROBE_JOG_ERROR;
         const bool isIgnored = !isOnPath && parts.model.settings().isSet(ignored);
-        probe.isMoving = !isIgnored && !parts.power.isStopping && isAnythingMoving(parts);
+        probe.isMoving = !isIgnored && !parts.power.isStopping() && isAnythingMoving(parts);
         probe.isDropping = executor.snapshot().isDropping;
     }
-    switch (step(parts.probe, probe, without(parts.offsets, parts.position.fb))) {
+    switch (parts.probe.step(probe, without(parts.offsets, parts.position.fb))) {
     case ProbeEvent::NONE: break;
     case ProbeEvent::FOUND: executor.drop(); break;
     case ProbeEvent::TOUCHED:

@@ -26,7 +26,7 @@ JointCheck joint_check(const ControllerParts &parts, const Inputs &in) noexcept 
 void check_joints(ControllerParts &parts, const Inputs &in) noexcept {
     Joints &joints = parts.joints;
     const JointCheck how = joint_check(parts, in);
-    for (int j = 0; parts.power.isEnabled; ++j) {
+    for (int j = 0; parts.power.isEnabled(); ++j) {
         switch (find_fault(joints, j, parts.model.settings(), how)) {
         case JointFault::NONE: return;
         case JointFault::FEEDBACK_LOST: parts.stop_category_0(FaultKind::FEEDBACK_LOST, j); break;
@@ -62,7 +62,7 @@ void SafetyMonitor::step(ControllerParts &parts, const Inputs &in, std::uint32_t
     check_positions(parts, in.lost_positions);
     check_task(parts);
     check_servo_thread(parts, in.time_ns);
-    if (!parts.power.isEnabled) [[unlikely]] {
+    if (!parts.power.isEnabled()) [[unlikely]] {
         return;
     }
     if (!in.isEnableOn) [[unlikely]] {
@@ -79,7 +79,7 @@ void SafetyMonitor::step(ControllerParts &parts, const Inputs &in, std::uint32_t
 /// The feedback is no longer that of the machine: braking to a position would be wrong, too.
 void SafetyMonitor::check_positions(ControllerParts &parts, std::uint32_t lost_positions) noexcept {
     if (note_lost_positions(parts.homing, lost_positions)) [[unlikely]] {
-        if (parts.power.isEnabled || homed_mask(parts.homing) != 0) {
+        if (parts.power.isEnabled() || homed_mask(parts.homing) != 0) {
             parts.raise(FaultKind::POSITIONS_LOST, -1);
         }
         parts.switch_off();
@@ -91,23 +91,22 @@ void SafetyMonitor::check_task(ControllerParts &parts) noexcept {
     const TaskSigns signs{channels.task_loops.load(std::memory_order_relaxed),
                           channels.host_looks.load(std::memory_order_relaxed),
                           channels.isTaskDead.load(std::memory_order_acquire) != 0};
-    if (motion::step(watchdog_, signs, parts.model.period_s())) [[unlikely]] {
-        parts.stop_category_1(FaultKind::TASK_LOST, signs.isDead ? 1 : 0,
-                              watchdog_.standing_s + watchdog_.starved_s);
+    if (watchdog_.step(signs, parts.model.period_s())) [[unlikely]] {
+        parts.stop_category_1(FaultKind::TASK_LOST, signs.isDead ? 1 : 0, watchdog_.silent_s());
     }
 }
 
 /// Drives and step generators have kept their last command: continuing from there would be a jump.
 void SafetyMonitor::check_servo_thread(ControllerParts &parts, std::int64_t time_ns) noexcept {
-    const double missed_s = gap_s(watchdog_, time_ns);
-    if (missed_s > 0 && parts.power.isEnabled) [[unlikely]] {
+    const double missed_s = watchdog_.gap_s(time_ns);
+    if (missed_s > 0 && parts.power.isEnabled()) [[unlikely]] {
         isAnythingMoving(parts) ? parts.stop_category_0(FaultKind::MOTION_STOOD, 1, missed_s)
                                 : parts.raise(FaultKind::MOTION_STOOD, 0, missed_s);
     }
 }
 
 void finish_stop(ControllerParts &parts) noexcept {
-    if (parts.power.isStopping && !isAnythingMoving(parts) && areAtRest(parts.offsets) &&
+    if (parts.power.isStopping() && !isAnythingMoving(parts) && areAtRest(parts.offsets) &&
         areAtRest(parts.extra)) [[unlikely]] {
         parts.switch_off();
     }

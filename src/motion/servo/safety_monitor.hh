@@ -12,9 +12,9 @@ namespace mw::motion {
 
 class SafetyMonitor {
   public:
-    CommandResult take(const SetWatchdog &command) noexcept { return motion::take(watchdog_, command); }
-    CommandResult take(const Heartbeat &command) noexcept { return motion::take(watchdog_, command); }
-    bool isTaskLost() const noexcept { return watchdog_.isLost; }
+    CommandResult take(const SetWatchdog &command) noexcept { return watchdog_.take(command); }
+    CommandResult take(const Heartbeat &command) noexcept { return watchdog_.take(command); }
+    bool isTaskLost() const noexcept { return watchdog_.isTaskLost(); }
 
     /// After the feedback of the cycle. `spindles_lost`: bit per spindle whose feedback is not a number.
     [[gnu::hot]] void step(ControllerParts &parts, const Inputs &in, std::uint32_t spindles_lost) noexcept;

@@ -94,8 +94,8 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
     s.queue_depth = parts.link->queue_depth.load(std::memory_order_relaxed);
     s.isQueueFull = parts.link->isQueueFull.load(std::memory_order_relaxed) != 0;
     s.last_path_id = parts.link->last_done_id.load(std::memory_order_acquire);
-    s.isInPosition = !isAnythingMoving(parts) && busy(parts.indexers) == 0 &&
-                     (parts.power.mode != Mode::COORD || s.queue_depth == 0) && !parts.types.isPending;
+    s.isInPosition = !isAnythingMoving(parts) && parts.indexers.busy() == 0 &&
+                     (parts.power.mode() != Mode::COORD || s.queue_depth == 0) && !parts.types.isPending();
     s.current_velocity = parts.position.velocity;
     const trajectory::MoveTag *tag = parts.active_move();
     if (tag == nullptr) {
@@ -125,16 +125,16 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
     PathView &v = parts.link->newest;
     v.executor = parts.executor.snapshot();
     v.epoch = now.epoch;
-    v.mode = parts.power.mode;
-    v.isEnabled = parts.power.isEnabled;
-    v.isStopping = parts.power.isStopping || parts.retracing.isPathLeft;
-    v.enables = parts.power.enables;
+    v.mode = parts.power.mode();
+    v.isEnabled = parts.power.isEnabled();
+    v.isStopping = parts.power.isStopping() || parts.retracing.isPathLeft;
+    v.enables = parts.power.enables();
     v.limits_version = parts.model.limits_version();
     v.position = programmed;
-    v.feed_scale = parts.holds.net_feed_scale;
-    v.rapid_scale = parts.holds.rapid_scale;
+    v.feed_scale = parts.holds.net_feed_scale();
+    v.rapid_scale = parts.holds.rapid_scale();
     v.max_feed_scale = std::max(1.0, parts.model.settings().get(Parameter::MAX_FEED_SCALE));
-    v.max_velocity = parts.holds.max_velocity;
+    v.max_velocity = parts.holds.max_velocity();
     v.spindles_reversible = 0;
     v.spindles_ready = 0;
     for (int n = 0; n < parts.model.num_spindles(); ++n) {
@@ -147,14 +147,14 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
         v.spindles_ready |= isReady(parts.spindles[n], now.in.spindle[i]) ? 1U << n : 0U;
     }
     v.isProbeClosed = now.in.isProbeClosed;
-    v.probe_trips = parts.probe.trips;
-    v.steps = parts.holds.steps;
-    v.isStepping = parts.holds.isStepping;
-    v.indexers_unlocked = in_state(parts.indexers, LockState::UNLOCKED);
-    v.indexers_busy = busy(parts.indexers);
-    v.indexers_stuck = in_state(parts.indexers, LockState::STUCK);
-    v.type_asks = parts.types.asks;
-    v.isTypePending = parts.types.isPending;
+    v.probe_trips = parts.probe.trips();
+    v.steps = parts.holds.steps();
+    v.isStepping = parts.holds.isStepping();
+    v.indexers_unlocked = parts.indexers.in_state(LockState::UNLOCKED);
+    v.indexers_busy = parts.indexers.busy();
+    v.indexers_stuck = parts.indexers.in_state(LockState::STUCK);
+    v.type_asks = parts.types.requests();
+    v.isTypePending = parts.types.isPending();
     parts.link->view.write(v);
     if (parts.offsets.axes != 0) [[unlikely]] {
         parts.link->offsets.write(range(parts.offsets));
@@ -171,8 +171,8 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
     s.time_ns = in.time_ns;
     s.epoch = now.epoch;
     s.last_immediate_id = now.last_immediate_id;
-    s.mode = parts.power.mode;
-    s.isEnabled = parts.power.isEnabled;
+    s.mode = parts.power.mode();
+    s.isEnabled = parts.power.isEnabled();
     s.isAllHomed = parts.model.limits().homed.areAll;
     s.isTaskLost = now.isTaskLost;
     s.num_joints = parts.model.num_joints();
@@ -181,23 +181,23 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
         fill_settings(parts.model.settings(), out);
     }
     fill(parts.position, s);
-    fill(parts.probe, in.isProbeClosed, s);
-    fill(parts.holds, s);
-    fill(parts.outputs, in, out);
+    parts.probe.fill(in.isProbeClosed, s);
+    parts.holds.fill(s);
+    parts.outputs.fill(in, out);
     const geometry::Pose programmed = parts.programmed_pose();
     fill_path(parts, programmed, s);
     fill_heading(parts.link->store, parts.executor.output().move, programmed, out);
     fill(parts.joints,
-         {parts.power.isEnabled, parts.jogs.areLimitsOverridden, parts.model.limits().homed.joints}, out);
-    fill(parts.jogs, parts.power.mode, programmed, out);
+         {parts.power.isEnabled(), parts.jogs.areLimitsOverridden, parts.model.limits().homed.joints}, out);
+    fill(parts.jogs, parts.power.mode(), programmed, out);
     if (parts.offsets.axes != 0 || !out.areOffsetsQuiet) [[unlikely]] {
         fill(parts.offsets, out);
     }
     fill(parts.extra, parts.model.limits().homed.joints, out);
-    out.isHomingQuiet = out.isHomingQuiet && parts.indexers.mask == 0;  // they add to its outputs
+    out.isHomingQuiet = out.isHomingQuiet && parts.indexers.isEmpty();  // they add to its outputs
     fill(parts.homing, out);
-    fill(parts.indexers, out);
-    fill(parts.spindles, in, parts.power.isEnabled, out);
+    parts.indexers.fill(out);
+    fill(parts.spindles, in, parts.power.isEnabled(), out);
     for (int j = parts.model.num_joints(); j < parts.joints.loaded; ++j) {
         fill_unused(in.joint[static_cast<std::size_t>(j)], j, out);
     }
@@ -208,7 +208,7 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
         TraceSample sample;
         sample.time_ns = in.time_ns;
         sample.isInMotion = isAnythingMoving(parts) ? 1 : 0;
-        sample.pose_kind = parts.types.switches;
+        sample.pose_kind = parts.types.switches();
         sample.isRetracing = parts.retracing.retrace.isAway() ? 1 : 0;
         sample.programmed_pos_cmd = programmed;
         trace(*parts.channels, s, parts.joints, sample);

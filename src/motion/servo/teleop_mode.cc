@@ -46,7 +46,7 @@ void step_axes_together(ControllerParts &parts, std::uint32_t locked) noexcept {
 geometry::Pose jogged_pose(ControllerParts &parts) noexcept {
     const FoldedLimits &limits = parts.model.limits();
     const bool areJointsAxes = parts.model.map().areJointsAxes();
-    const std::uint32_t locked = locked_axes(limits, held(parts.indexers));
+    const std::uint32_t locked = locked_axes(limits, parts.indexers.held());
     if (!areJointsAxes) {
         step_axes_together(parts, locked);
     }

@@ -15,34 +15,34 @@ int type_of(double pin) noexcept {
 
 }  // namespace
 
-TypeStep step(KinematicsTypes &types, const TypeInputs &in) noexcept {
+TypeStep KinematicsTypes::step(const TypeInputs &in) noexcept {
     const int wanted = type_of(in.pin);
-    if (wanted != types.wanted) {
-        types.wanted = wanted;
-        types.isPending = wanted != types.type;
-        types.isTold = false;
-        ++types.asks;
+    if (wanted != wanted_) {
+        wanted_ = wanted;
+        pending_ = wanted != active_;
+        reported_ = false;
+        ++requests_;
         if (wanted == NO_TYPE) {
-            types.isPending = false;
+            pending_ = false;
             return TypeStep::NO_SUCH_TYPE;
         }
     }
-    if (!types.isPending) {
+    if (!pending_) {
         return TypeStep::NONE;
     }
-    if (in.isOnPath && !types.isTold) {
-        types.isTold = true;
+    if (in.isOnPath && !reported_) {
+        reported_ = true;
         return TypeStep::ON_PATH;
     }
-    return in.isOnPath || in.isMoving || in.seen != types.asks ? TypeStep::WAIT : TypeStep::SWITCH;
+    return in.isOnPath || in.isMoving || in.seen != requests_ ? TypeStep::WAIT : TypeStep::SWITCH;
 }
 
-void settle(KinematicsTypes &types, bool isSwitched) noexcept {
-    types.type = isSwitched ? types.wanted : types.type;
+void KinematicsTypes::settle(bool isSwitched) noexcept {
+    active_ = isSwitched ? wanted_ : active_;
     if (isSwitched) {
-        ++types.switches;
+        ++switches_;
     }
-    types.isPending = false;
+    pending_ = false;
 }
 
 }  // namespace mw::motion

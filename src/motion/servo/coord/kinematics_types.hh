@@ -7,15 +7,6 @@
 
 namespace mw::motion {
 
-struct KinematicsTypes {
-    int type = 0;               ///< active
-    int wanted = 0;             ///< value of the pin
-    std::uint32_t asks = 0;     ///< counts changes of the pin
-    std::uint8_t switches = 0;  ///< counts changes of the type, with overflow
-    bool isPending = false;     ///< the type of the pin is not active yet
-    bool isTold = false;        ///< a message has reported that the type is not possible
-};
-
 struct TypeInputs {
     double pin = 0;
     bool isOnPath = false;  ///< a path is driven or waits
@@ -33,9 +24,31 @@ enum class TypeStep : std::uint8_t {
     ON_PATH,       ///< requested while a path is driven: the path is to be stopped. Reported once
 };
 
-/// One cycle.
-TypeStep step(KinematicsTypes &types, const TypeInputs &in) noexcept;
-/// Result of SWITCH: if the type does not exist or has no pose, the active type stays until the pin changes.
-void settle(KinematicsTypes &types, bool isSwitched) noexcept;
+class KinematicsTypes {
+  public:
+    /// One cycle.
+    TypeStep step(const TypeInputs &in) noexcept;
+    /// Result of SWITCH: if the type does not exist or has no pose, the active type stays until the pin
+    /// changes.
+    void settle(bool isSwitched) noexcept;
+
+    int active() const noexcept { return active_; }
+    /// Value of the pin.
+    int wanted() const noexcept { return wanted_; }
+    /// The type of the pin is not active yet.
+    bool isPending() const noexcept { return pending_; }
+    /// Counts changes of the pin.
+    std::uint32_t requests() const noexcept { return requests_; }
+    /// Counts changes of the type, with overflow.
+    std::uint8_t switches() const noexcept { return switches_; }
+
+  private:
+    int active_ = 0;
+    int wanted_ = 0;
+    std::uint32_t requests_ = 0;
+    std::uint8_t switches_ = 0;
+    bool pending_ = false;
+    bool reported_ = false;  ///< a message has reported that the type is not possible
+};
 
 }  // namespace mw::motion

@@ -15,92 +15,92 @@ constexpr double SCALE_ROUNDING = 1e-9;
 
 }  // namespace
 
-void step(Holds &holds, const HoldInputs &in) noexcept {
+void Holds::step(const HoldInputs &in) noexcept {
     // A value that is not a number is a feed of 0: a broken sensor must not let the machine run.
     const double wanted = std::isfinite(in.adaptive_feed) ? std::clamp(in.adaptive_feed, -1.0, 1.0) : 0.0;
-    const double adaptive = holds.isAdaptiveFeedEnabled ? wanted : 1.0;
-    holds.isReverseWanted = (adaptive < 0) != holds.isReverse;
-    holds.reverse_rate = trajectory::Retrace::HIGHEST_RATE * std::abs(adaptive);
+    const double adaptive = adaptive_feed_enabled_ ? wanted : 1.0;
+    reverse_wanted_ = (adaptive < 0) != reversed_;
+    reverse_rate_ = trajectory::Retrace::HIGHEST_RATE * std::abs(adaptive);
     // Commands that wait during reverse run keep their speed.
-    holds.net_feed_scale = holds.jog_scale() * std::abs(adaptive);
-    const bool isFeedHeld = (holds.isFeedHoldEnabled && in.isFeedHeld) || in.isFeedInhibited;
-    holds.isStandingWanted = holds.isPaused || isFeedHeld;
-    const bool isStepOver = holds.isStepping && in.steps_done == holds.steps;
+    net_feed_scale_ = jog_scale() * std::abs(adaptive);
+    const bool isFeedHeld = (feed_hold_enabled_ && in.isFeedHeld) || in.isFeedInhibited;
+    hold_wanted_ = paused_ || isFeedHeld;
+    const bool isStepOver = stepping_ && in.steps_done == steps_;
     if (isStepOver) {
-        holds.isStepping = false;
-        holds.isPaused = true;
+        stepping_ = false;
+        paused_ = true;
     }
 }
 
-CommandResult take(Holds &holds, const Pause &) noexcept {
-    holds.isPaused = true;
-    holds.isStepping = false;
+CommandResult Holds::take(const Pause &) noexcept {
+    paused_ = true;
+    stepping_ = false;
     return {};
 }
 
-CommandResult take(Holds &holds, const Resume &) noexcept {
-    holds.isPaused = false;
-    holds.isStepping = false;
+CommandResult Holds::take(const Resume &) noexcept {
+    paused_ = false;
+    stepping_ = false;
     return {};
 }
 
-CommandResult take(Holds &holds, const StepOnce &) noexcept {
-    holds.isPaused = false;
-    holds.isStepping = true;
-    ++holds.steps;
+CommandResult Holds::take(const StepOnce &) noexcept {
+    paused_ = false;
+    stepping_ = true;
+    ++steps_;
     return {};
 }
 
-CommandResult take(Holds &holds, const SetReverse &command, bool isWayKnown) noexcept {
-    const bool isRefused = command.isReverse && !isWayKnown;
-    holds.isReverse = command.isReverse && !isRefused;
+CommandResult Holds::take(const SetReverse &command, bool isPathRecorded) noexcept {
+    const bool isRefused = command.isReverse && !isPathRecorded;
+    reversed_ = command.isReverse && !isRefused;
     return {isRefused ? Reason::NO_WAY_BACK : Reason::NONE};
 }
 
-CommandResult take(Holds &holds, const SetMaxVelocity &command) noexcept {
+CommandResult Holds::take(const SetMaxVelocity &command) noexcept {
     if (!(command.velocity >= 0)) {
         return {Reason::OUT_OF_RANGE};
     }
-    holds.max_velocity = command.velocity;
+    max_velocity_ = command.velocity;
     return {};
 }
 
-CommandResult take(Holds &holds, const SetScale &command, double max_feed_scale) noexcept {
+CommandResult Holds::take(const SetScale &command, double max_feed_scale) noexcept {
     const bool isRapid = command.what == Scale::RAPID;
     const double most = (isRapid ? 1.0 : max_feed_scale) * (1 + SCALE_ROUNDING);
     if (!(command.factor >= 0) || !std::isfinite(command.factor) || command.factor > most) {
         return {Reason::OUT_OF_RANGE};
     }
-    (isRapid ? holds.rapid_scale : holds.feed_scale) = command.factor;
+    (isRapid ? rapid_scale_ : feed_scale_) = command.factor;
     return {};
 }
 
-CommandResult take(Holds &holds, const SetSwitch &command) noexcept {
+CommandResult Holds::take(const SetSwitch &command) noexcept {
     switch (command.what) {
-    case Switch::FEED_OVERRIDE: holds.isFeedOverrideEnabled = command.isEnabled; break;
-    case Switch::ADAPTIVE_FEED: holds.isAdaptiveFeedEnabled = command.isEnabled; break;
-    case Switch::FEED_HOLD: holds.isFeedHoldEnabled = command.isEnabled; break;
+    case Switch::FEED_OVERRIDE: feed_override_enabled_ = command.isEnabled; break;
+    case Switch::ADAPTIVE_FEED: adaptive_feed_enabled_ = command.isEnabled; break;
+    case Switch::FEED_HOLD: feed_hold_enabled_ = command.isEnabled; break;
     case Switch::SPINDLE_OVERRIDE: break;
     }
     return {};
 }
 
-void release(Holds &holds) noexcept {
-    holds.isPaused = false;
-    holds.isStepping = false;
-    holds.isReverse = false;
+void Holds::release() noexcept {
+    paused_ = false;
+    stepping_ = false;
+    reversed_ = false;
 }
 
-void fill(const Holds &holds, Status &status) noexcept {
-    status.feed_scale = holds.feed_scale;
-    status.rapid_scale = holds.rapid_scale;
-    status.net_feed_scale = holds.net_feed_scale;
-    status.isFeedOverrideEnabled = holds.isFeedOverrideEnabled;
-    status.isAdaptiveFeedEnabled = holds.isAdaptiveFeedEnabled;
-    status.isFeedHoldEnabled = holds.isFeedHoldEnabled;
-    status.isPaused = holds.isPaused;
-    status.isStepping = holds.isStepping;
-    status.isReverse = holds.isReverseWanted;
+void Holds::fill(Status &status) const noexcept {
+    status.feed_scale = feed_scale_;
+    status.rapid_scale = rapid_scale_;
+    status.net_feed_scale = net_feed_scale_;
+    status.isFeedOverrideEnabled = feed_override_enabled_;
+    status.isAdaptiveFeedEnabled = adaptive_feed_enabled_;
+    status.isFeedHoldEnabled = feed_hold_enabled_;
+    status.isPaused = paused_;
+    status.isStepping = stepping_;
+    status.isReverse = reverse_wanted_;
 }
 
 }  // namespace mw::motion

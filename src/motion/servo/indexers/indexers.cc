@@ -52,18 +52,18 @@ std::size_t at(int joint) noexcept {
 
 }  // namespace
 
-IndexerEvent step(Indexers &indexers, const IndexerInputs &in) noexcept {
+IndexerEvent Indexers::step(const IndexerInputs &in) noexcept {
     IndexerEvent event;
-    indexers.homing = in.homing;
-    for (std::uint32_t left = indexers.mask; left != 0; left &= left - 1) {
+    homing_ = in.homing;
+    for (std::uint32_t left = joints_; left != 0; left &= left - 1) {
         const int j = std::countr_zero(left);
         const std::uint32_t bit = 1U << j;
-        LockState &state = indexers.state[at(j)];
+        LockState &state = state_[at(j)];
         if ((in.homing & bit) != 0) {
             state = LockState::LOCKED;
             continue;
         }
-        int &wait = indexers.wait[at(j)];
+        int &wait = wait_[at(j)];
         LockSituation s;
         s.isWanted = (in.wanted & bit) != 0;
         s.isMoving = (in.moving & bit) != 0;
@@ -77,39 +77,39 @@ IndexerEvent step(Indexers &indexers, const IndexerInputs &in) noexcept {
     return event;
 }
 
-void switch_off(Indexers &indexers) noexcept {
-    indexers.state.fill(LockState::LOCKED);
-    indexers.wait.fill(0);
+void Indexers::switch_off() noexcept {
+    state_.fill(LockState::LOCKED);
+    wait_.fill(0);
 }
 
-void switch_on(Indexers &indexers, const IndexerInputs &in) noexcept {
-    switch_off(indexers);
-    for (std::uint32_t open = indexers.mask & in.unlocked; open != 0; open &= open - 1) {
-        indexers.state[at(std::countr_zero(open))] = LockState::LOCKING;
+void Indexers::switch_on(std::uint32_t unlocked) noexcept {
+    switch_off();
+    for (std::uint32_t open = joints_ & unlocked; open != 0; open &= open - 1) {
+        state_[at(std::countr_zero(open))] = LockState::LOCKING;
     }
 }
 
-std::uint32_t in_state(const Indexers &indexers, LockState state) noexcept {
+std::uint32_t Indexers::in_state(LockState state) const noexcept {
     std::uint32_t out = 0;
-    for (std::uint32_t left = indexers.mask; left != 0; left &= left - 1) {
+    for (std::uint32_t left = joints_; left != 0; left &= left - 1) {
         const int j = std::countr_zero(left);
-        out |= indexers.state[at(j)] == state ? 1U << j : 0U;
+        out |= state_[at(j)] == state ? 1U << j : 0U;
     }
     return out;
 }
 
-std::uint32_t held(const Indexers &indexers) noexcept {
-    return indexers.mask & ~in_state(indexers, LockState::UNLOCKED) & ~indexers.homing;
+std::uint32_t Indexers::held() const noexcept {
+    return joints_ & ~in_state(LockState::UNLOCKED) & ~homing_;
 }
 
-std::uint32_t busy(const Indexers &indexers) noexcept {
-    return indexers.mask & ~in_state(indexers, LockState::LOCKED) & ~in_state(indexers, LockState::STUCK);
+std::uint32_t Indexers::busy() const noexcept {
+    return joints_ & ~in_state(LockState::LOCKED) & ~in_state(LockState::STUCK);
 }
 
-void fill(const Indexers &indexers, Outputs &out) noexcept {
-    for (std::uint32_t left = indexers.mask; left != 0; left &= left - 1) {
+void Indexers::fill(Outputs &out) const noexcept {
+    for (std::uint32_t left = joints_; left != 0; left &= left - 1) {
         const int j = std::countr_zero(left);
-        const LockState state = indexers.state[at(j)];
+        const LockState state = state_[at(j)];
         out.joint[at(j)].isUnlockWanted =
             out.joint[at(j)].isUnlockWanted || state == LockState::UNLOCKING || state == LockState::UNLOCKED;
     }

@@ -19,13 +19,6 @@ enum class LockState : std::uint8_t {
     STUCK,      ///< it has not locked in time
 };
 
-struct Indexers {
-    std::uint32_t mask = 0;    ///< bit per joint that has a lock
-    std::uint32_t homing = 0;  ///< joints that are being homed
-    std::array<LockState, MAX_JOINTS> state{};
-    std::array<int, MAX_JOINTS> wait{};  ///< cycles in this state
-};
-
 /// Maximum time of locking or unlocking [s].
 inline constexpr double LONGEST_LOCK_S = 30;
 
@@ -42,21 +35,33 @@ struct IndexerEvent {
     LockFault fault = LockFault::NONE;
     int joint = -1;
 };
-/// One cycle while the machine is on, before anything moves.
-IndexerEvent step(Indexers &indexers, const IndexerInputs &in) noexcept;
+class Indexers {
+  public:
+    /// Bit per joint that has a lock.
+    void set_joints(std::uint32_t joints) noexcept { joints_ = joints; }
+    bool isEmpty() const noexcept { return joints_ == 0; }
 
-/// All lock at once: the machine goes off.
-void switch_off(Indexers &indexers) noexcept;
-/// Switched on: state from the pins.
-void switch_on(Indexers &indexers, const IndexerInputs &in) noexcept;
+    /// One cycle while the machine is on, before anything moves.
+    IndexerEvent step(const IndexerInputs &in) noexcept;
+    /// All lock at once: the machine goes off.
+    void switch_off() noexcept;
+    /// Switched on. `unlocked`: bit per joint, by the pins.
+    void switch_on(std::uint32_t unlocked) noexcept;
 
-/// Joints that may not be moved now.
-std::uint32_t held(const Indexers &indexers) noexcept;
-/// Joints that wait for their lock, or move.
-[[gnu::hot]] std::uint32_t busy(const Indexers &indexers) noexcept;
-std::uint32_t in_state(const Indexers &indexers, LockState state) noexcept;
+    /// Joints that may not be moved now.
+    std::uint32_t held() const noexcept;
+    /// Joints that wait for their lock, or move.
+    [[gnu::hot]] std::uint32_t busy() const noexcept;
+    std::uint32_t in_state(LockState state) const noexcept;
 
-void fill(const Indexers &indexers, Outputs &out) noexcept;
+    void fill(Outputs &out) const noexcept;
+
+  private:
+    std::uint32_t joints_ = 0;
+    std::uint32_t homing_ = 0;  ///< joints that are being homed
+    std::array<LockState, MAX_JOINTS> state_{};
+    std::array<int, MAX_JOINTS> wait_{};  ///< cycles in this state
+};
 
 /// The pins is-unlocked as bits.
 std::uint32_t unlocked_pins(const Inputs &in) noexcept;

@@ -14,19 +14,32 @@
 
 namespace mw::motion {
 
-struct MachineOutputs {
-    int num_digital = 0, num_analog = 0;
-    std::uint64_t digital = 0;  ///< bit per output
-    std::array<double, MAX_ANALOG_IO> analog{};
-};
+class MachineOutputs {
+  public:
+    MachineOutputs(int num_digital, int num_analog) noexcept
+        : num_digital_(num_digital), num_analog_(num_analog) {}
 
-CommandResult take(MachineOutputs &outputs, const SetDigitalOutput &command) noexcept;
-CommandResult take(MachineOutputs &outputs, const SetAnalogOutput &command) noexcept;
-/// An output change whose position on the path has been passed; the path planner has checked its index. While
-/// a stop brakes along the path, nothing is switched on and no value grows: only changes that switch
-/// something off are done.
-void fire(MachineOutputs &outputs, const trajectory::PathEvent &event, bool isStopping) noexcept;
-/// Outputs, and the values of the inputs.
-void fill(const MachineOutputs &outputs, const Inputs &in, Outputs &out) noexcept;
+    CommandResult take(const SetDigitalOutput &command) noexcept;
+    CommandResult take(const SetAnalogOutput &command) noexcept;
+    /// An output change whose position on the path has been passed; the path planner has checked its index.
+    /// While a stop brakes along the path, nothing is switched on and no value grows: only changes that
+    /// switch something off are done.
+    void fire(const trajectory::PathEvent &event, bool isStopping) noexcept;
+    /// Outputs, and the values of the inputs.
+    void fill(const Inputs &in, Outputs &out) const noexcept;
+
+    bool hasDigital(int index) const noexcept { return index >= 0 && index < num_digital_; }
+    bool hasAnalog(int index) const noexcept { return index >= 0 && index < num_analog_; }
+    /// Bit per output.
+    std::uint64_t digital() const noexcept { return digital_; }
+    double analog(int index) const noexcept { return analog_[static_cast<std::size_t>(index)]; }
+
+  private:
+    void set_digital(int index, bool isOn) noexcept;
+
+    int num_digital_, num_analog_;
+    std::uint64_t digital_ = 0;
+    std::array<double, MAX_ANALOG_IO> analog_{};
+};
 
 }  // namespace mw::motion

@@ -3,8 +3,8 @@
 
 namespace mw::motion {
 
-Reason check_mode(const Power &power, Mode mode, const ModeConditions &conditions) noexcept {
-    if (mode == power.mode) {
+Reason Power::check_mode(Mode mode, const ModeConditions &conditions) const noexcept {
+    if (mode == mode_) {
         return Reason::NONE;
     }
     if (conditions.isHoming) {
@@ -17,20 +17,20 @@ Reason check_mode(const Power &power, Mode mode, const ModeConditions &condition
     return isLost ? Reason::NOT_HOMED : Reason::NONE;
 }
 
-bool begin_stop(Power &power) noexcept {
-    const bool isNew = power.isReady();
-    power.isStopping = power.isStopping || isNew;
+bool Power::begin_stop() noexcept {
+    const bool isNew = isReady();
+    stopping_ = stopping_ || isNew;
     return isNew;
 }
 
-void switch_on(Power &power) noexcept {
-    power.isEnabled = true;
-    ++power.enables;
+void Power::switch_on() noexcept {
+    enabled_ = true;
+    ++enables_;
 }
 
-void switch_off(Power &power) noexcept {
-    power.isEnabled = false;
-    power.isStopping = false;
+void Power::switch_off() noexcept {
+    enabled_ = false;
+    stopping_ = false;
 }
 
 }  // namespace mw::motion

@@ -10,28 +10,38 @@
 
 namespace mw::motion {
 
-struct Power {
-    Mode mode = Mode::FREE;
-    bool isEnabled = false;
-    bool isStopping = false;    ///< category 1: everything brakes, off at standstill
-    std::uint32_t enables = 0;  ///< counts how often it was switched on
-
-    /// Accepts commands that move something.
-    bool isReady() const noexcept { return isEnabled && !isStopping; }
-};
-
 /// Conditions for a change of the mode.
 struct ModeConditions {
     bool isHoming = false, isMoving = false;
     bool needsHome = false;  ///< Cartesian modes need a known pose
     bool areAllHomed = false;
 };
-/// Modes change only at standstill; NONE when the change is possible, or not needed.
-Reason check_mode(const Power &power, Mode mode, const ModeConditions &conditions) noexcept;
 
-/// True when the stop begins with this call.
-bool begin_stop(Power &power) noexcept;
-void switch_on(Power &power) noexcept;
-void switch_off(Power &power) noexcept;
+/// A stop of category 1 is active only while the machine is on.
+class Power {
+  public:
+    Mode mode() const noexcept { return mode_; }
+    bool isEnabled() const noexcept { return enabled_; }
+    /// Category 1: everything brakes, off at standstill.
+    bool isStopping() const noexcept { return stopping_; }
+    /// Accepts commands that move something.
+    bool isReady() const noexcept { return enabled_ && !stopping_; }
+    /// Counts how often it was switched on.
+    std::uint32_t enables() const noexcept { return enables_; }
+
+    /// Modes change only at standstill; NONE when the change is possible, or not needed.
+    Reason check_mode(Mode mode, const ModeConditions &conditions) const noexcept;
+    void set_mode(Mode mode) noexcept { mode_ = mode; }
+    /// True when the stop begins with this call.
+    bool begin_stop() noexcept;
+    void switch_on() noexcept;
+    void switch_off() noexcept;
+
+  private:
+    Mode mode_ = Mode::FREE;
+    bool enabled_ = false;
+    bool stopping_ = false;
+    std::uint32_t enables_ = 0;
+};
 
 }  // namespace mw::motion

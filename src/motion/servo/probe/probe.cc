@@ -3,34 +3,34 @@
 
 namespace mw::motion {
 
-ProbeEvent step(TouchProbe &probe, const ProbeInputs &in, const geometry::Pose &position) noexcept {
+ProbeEvent TouchProbe::step(const ProbeInputs &in, const geometry::Pose &position) noexcept {
     if (in.probing_move != 0) [[unlikely]] {
-        if (probe.move != in.probing_move) {
-            probe.move = in.probing_move;
-            probe.isTripped = false;
+        if (move_ != in.probing_move) {
+            move_ = in.probing_move;
+            tripped_ = false;
         }
         const bool isContact = in.isClosed != in.isAway;
-        if (!isContact || probe.isTripped) {
+        if (!isContact || tripped_) {
             return ProbeEvent::NONE;
         }
-        probe.isTripped = true;
-        probe.position = position;
-        ++probe.trips;
+        tripped_ = true;
+        position_ = position;
+        ++trips_;
         return ProbeEvent::FOUND;
     }
-    const bool isTouched = in.isClosed && !probe.wasClosed && in.isMoving;
-    const bool isRetracting = in.isDropping && probe.isTripped;
+    const bool isTouched = in.isClosed && !was_closed_ && in.isMoving;
+    const bool isRetracting = in.isDropping && tripped_;
     return isTouched && !isRetracting ? ProbeEvent::TOUCHED : ProbeEvent::NONE;
 }
 
-CommandResult take(TouchProbe &probe, const ClearProbeFlag &) noexcept {
-    probe.isTripped = false;
+CommandResult TouchProbe::take(const ClearProbeFlag &) noexcept {
+    tripped_ = false;
     return {};
 }
 
-void fill(const TouchProbe &probe, bool isClosed, Status &status) noexcept {
-    status.probed_pos = probe.position;
-    status.isProbeTripped = probe.isTripped;
+void TouchProbe::fill(bool isClosed, Status &status) const noexcept {
+    status.probed_pos = position_;
+    status.isProbeTripped = tripped_;
     status.probe_value = isClosed;
 }
 

@@ -12,13 +12,6 @@
 
 namespace mw::motion {
 
-struct TouchProbe {
-    bool isTripped = false, wasClosed = false;
-    trajectory::Sequence move = 0;  ///< move whose start has cleared `isTripped`
-    std::uint32_t trips = 0;        ///< counts probing moves that were tripped
-    geometry::Pose position;        ///< position at the last contact
-};
-
 struct ProbeInputs {
     bool isClosed = false;
     trajectory::Sequence probing_move = 0;  ///< the active probing move, 0: none
@@ -32,9 +25,25 @@ enum class ProbeEvent : std::uint8_t {
     FOUND,    ///< the probing move is to end; `position` is the position of the machine
     TOUCHED,  ///< in a move that is no probing move
 };
-ProbeEvent step(TouchProbe &probe, const ProbeInputs &in, const geometry::Pose &position) noexcept;
 
-CommandResult take(TouchProbe &probe, const ClearProbeFlag &command) noexcept;
-void fill(const TouchProbe &probe, bool isClosed, Status &status) noexcept;
+class TouchProbe {
+  public:
+    /// One cycle while the machine is on. `position`: measured.
+    ProbeEvent step(const ProbeInputs &in, const geometry::Pose &position) noexcept;
+    /// At the end of each cycle: the state of the probe in it.
+    void end_cycle(bool isClosed) noexcept { was_closed_ = isClosed; }
+    CommandResult take(const ClearProbeFlag &command) noexcept;
+    void fill(bool isClosed, Status &status) const noexcept;
+
+    bool wasClosed() const noexcept { return was_closed_; }
+    /// Counts probing moves that were tripped.
+    std::uint32_t trips() const noexcept { return trips_; }
+
+  private:
+    bool tripped_ = false, was_closed_ = false;
+    trajectory::Sequence move_ = 0;  ///< move whose start has cleared `tripped_`
+    std::uint32_t trips_ = 0;
+    geometry::Pose position_;  ///< at the last contact
+};
 
 }  // namespace mw::motion

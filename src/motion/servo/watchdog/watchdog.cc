@@ -5,42 +5,42 @@
 
 namespace mw::motion {
 
-CommandResult take(Watchdog &watchdog, const SetWatchdog &command) noexcept {
+CommandResult Watchdog::take(const SetWatchdog &command) noexcept {
     if (!(command.timeout_s > 0)) {
         return {Reason::OUT_OF_RANGE};
     }
-    watchdog.isOn = command.isOn;
-    watchdog.timeout_s = command.timeout_s;
-    watchdog.standing_s = watchdog.starved_s = 0;
+    on_ = command.isOn;
+    timeout_s_ = command.timeout_s;
+    silent_s_ = starved_s_ = 0;
     return {};
 }
 
-CommandResult take(Watchdog &watchdog, const Heartbeat &) noexcept {
-    watchdog.standing_s = watchdog.starved_s = 0;
+CommandResult Watchdog::take(const Heartbeat &) noexcept {
+    silent_s_ = starved_s_ = 0;
     return {};
 }
 
-bool step(Watchdog &watchdog, const TaskSigns &signs, double period_s) noexcept {
+bool Watchdog::step(const TaskSigns &signs, double period_s) noexcept {
     constexpr double LOOK_S = 0.1;  // twice the time between two looks
     constexpr double SHARE_OF_STARVED = 0.25;
-    watchdog.unseen_s = signs.looks != watchdog.last.looks ? 0 : watchdog.unseen_s + period_s;
-    if (signs.loops != watchdog.last.loops) {
-        watchdog.standing_s = watchdog.starved_s = 0;
+    unseen_s_ = signs.looks != last_.looks ? 0 : unseen_s_ + period_s;
+    if (signs.loops != last_.loops) {
+        silent_s_ = starved_s_ = 0;
     } else {
-        const bool isStarved = signs.looks != 0 && watchdog.unseen_s > LOOK_S;
-        (isStarved ? watchdog.starved_s : watchdog.standing_s) += period_s;
+        const bool isStarved = signs.looks != 0 && unseen_s_ > LOOK_S;
+        (isStarved ? starved_s_ : silent_s_) += period_s;
     }
-    watchdog.last = signs;
-    const double counted_s = watchdog.standing_s + SHARE_OF_STARVED * watchdog.starved_s;
-    const bool wasLost = watchdog.isLost;
-    watchdog.isLost = signs.isDead || (watchdog.isOn && counted_s > watchdog.timeout_s);
-    return watchdog.isLost && !wasLost;
+    last_ = signs;
+    const double counted_s = silent_s_ + SHARE_OF_STARVED * starved_s_;
+    const bool wasLost = lost_;
+    lost_ = signs.isDead || (on_ && counted_s > timeout_s_);
+    return lost_ && !wasLost;
 }
 
-double gap_s(Watchdog &watchdog, std::int64_t time_ns) noexcept {
+double Watchdog::gap_s(std::int64_t time_ns) noexcept {
     constexpr std::int64_t LONGEST_NS = 250000000;
     constexpr double S_PER_NS = 1e-9;
-    const std::int64_t before_ns = std::exchange(watchdog.last_step_ns, time_ns);
+    const std::int64_t before_ns = std::exchange(last_step_ns_, time_ns);
     const std::int64_t gap_ns = time_ns - before_ns;
     return before_ns != 0 && gap_ns > LONGEST_NS ? static_cast<double>(gap_ns) * S_PER_NS : 0;
 }

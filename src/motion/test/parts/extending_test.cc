@@ -9,7 +9,7 @@
 #include "base/overloaded.hh"
 #include "motion/servo/outputs/machine_outputs.hh"
 
-namespace mw::motion {
+namespace mw::motion::example {
 
 // begin of the declaration
 /// A digital output goes to its other state.
@@ -18,13 +18,21 @@ struct FlipDigitalOutput {
 };
 // end of the declaration
 
+/// The part with the new command.
+class MachineOutputs : public motion::MachineOutputs {
+  public:
+    using motion::MachineOutputs::MachineOutputs;
+    using motion::MachineOutputs::take;
+    CommandResult take(const FlipDigitalOutput &command) noexcept;
+};
+
 // begin of the behaviour
-CommandResult take(MachineOutputs &outputs, const FlipDigitalOutput &command) noexcept {
-    if (command.index < 0 || command.index >= outputs.num_digital) {
+CommandResult MachineOutputs::take(const FlipDigitalOutput &command) noexcept {
+    if (!hasDigital(command.index)) {
         return {Reason::NO_SUCH_OUTPUT};
     }
-    outputs.digital ^= std::uint64_t{1} << command.index;
-    return {};
+    const bool isOn = (digital() >> command.index & 1U) != 0;
+    return take(SetDigitalOutput{command.index, !isOn});
 }
 // end of the behaviour
 
@@ -41,20 +49,20 @@ using Body = Extended<CommandBody, FlipDigitalOutput>::Body;
 
 template <class Command>
 concept TakenByOutputs = requires(MachineOutputs &outputs, const Command &command) {
-    { take(outputs, command) } -> std::same_as<CommandResult>;
+    { outputs.take(command) } -> std::same_as<CommandResult>;
 };
 
 TEST(ExtendingMotion, TheNewCommandDoesWhatItSaysAndRefusesWhatIsNotThere) {
-    MachineOutputs outputs;
-    outputs.num_digital = 4;
-    outputs.digital = 0b0101;
-    EXPECT_EQ(take(outputs, FlipDigitalOutput{3}).reason, Reason::NONE);
-    EXPECT_EQ(outputs.digital, 0b1101U);
-    EXPECT_EQ(take(outputs, FlipDigitalOutput{0}).reason, Reason::NONE);
-    EXPECT_EQ(outputs.digital, 0b1100U);
-    EXPECT_EQ(take(outputs, FlipDigitalOutput{4}).reason, Reason::NO_SUCH_OUTPUT);
-    EXPECT_EQ(take(outputs, FlipDigitalOutput{-1}).reason, Reason::NO_SUCH_OUTPUT);
-    EXPECT_EQ(outputs.digital, 0b1100U) << "a rejected command changes nothing";
+    MachineOutputs outputs(4, 0);
+    outputs.take(SetDigitalOutput{0, true});
+    outputs.take(SetDigitalOutput{2, true});
+    EXPECT_EQ(outputs.take(FlipDigitalOutput{3}).reason, Reason::NONE);
+    EXPECT_EQ(outputs.digital(), 0b1101U);
+    EXPECT_EQ(outputs.take(FlipDigitalOutput{0}).reason, Reason::NONE);
+    EXPECT_EQ(outputs.digital(), 0b1100U);
+    EXPECT_EQ(outputs.take(FlipDigitalOutput{4}).reason, Reason::NO_SUCH_OUTPUT);
+    EXPECT_EQ(outputs.take(FlipDigitalOutput{-1}).reason, Reason::NO_SUCH_OUTPUT);
+    EXPECT_EQ(outputs.digital(), 0b1100U) << "a rejected command changes nothing";
 }
 
 /// What step 3 of the page says: handlers for the old commands alone are no visitor of the new variant, with
@@ -63,19 +71,18 @@ TEST(ExtendingMotion, AVisitorThatForgetsTheNewCommandDoesNotCompile) {
     const auto others = []<class C>(const C &)
         requires(IS_ALTERNATIVE<C, CommandBody> && !TakenByOutputs<C>)
     { return CommandResult{}; };
-    MachineOutputs outputs;
-    outputs.num_digital = 1;
+    MachineOutputs outputs(1, 0);
     const Overloaded old{
-        others, [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return take(outputs, c); }};
+        others, [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return outputs.take(c); }};
     const Overloaded extended{others,
                               [&](const OneOf<SetDigitalOutput, SetAnalogOutput, FlipDigitalOutput> auto &c) {
-                                  return take(outputs, c);
+                                  return outputs.take(c);
                               }};
     static_assert(std::is_invocable_v<decltype(old), const SetDigitalOutput &>);
     static_assert(!std::is_invocable_v<decltype(old), const FlipDigitalOutput &>);
     EXPECT_EQ(std::visit(extended, Body{FlipDigitalOutput{0}}).reason, Reason::NONE);
     EXPECT_EQ(std::visit(extended, Body{Heartbeat{}}).reason, Reason::NONE);
-    EXPECT_EQ(outputs.digital, 1U);
+    EXPECT_EQ(outputs.digital(), 1U);
     static_assert(std::is_trivially_copyable_v<Body>);
 }
 
@@ -96,7 +103,7 @@ TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand) {
         EXPECT_NE(page.find("```cpp\n" + example + "```\n"), std::string::npos) << example;
     }
     // The dispatcher has the line that the new name joins, as on the page, without that name.
-    const std::string joined = ", FlipDigitalOutput> auto &c) { return take(parts.outputs, c); },";
+    const std::string joined = ", FlipDigitalOutput> auto &c) { return parts.outputs.take(c); },";
     const std::size_t place = page.find(joined);
     ASSERT_NE(place, std::string::npos);
     const std::size_t line = page.rfind('\n', place) + 1 + std::string("    ").size();
@@ -107,4 +114,4 @@ TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand) {
 }
 
 }  // namespace
-}  // namespace mw::motion
+}  // namespace mw::motion::example

@@ -12,6 +12,12 @@ geometry::Pose at(double x) {
     return p;
 }
 
+Status status_of(const TouchProbe &probe) {
+    Status status;
+    probe.fill(false, status);
+    return status;
+}
+
 ProbeInputs probing(bool isClosed, bool isAway = false, trajectory::Sequence move = 5) {
     ProbeInputs in;
     in.isClosed = isClosed;
@@ -22,45 +28,45 @@ ProbeInputs probing(bool isClosed, bool isAway = false, trajectory::Sequence mov
 
 TEST(ProbePart, AProbingMoveEndsWhereItTripsAndOnlyOnce) {
     TouchProbe probe;
-    EXPECT_EQ(step(probe, probing(false), at(1)), ProbeEvent::NONE);
-    EXPECT_EQ(step(probe, probing(true), at(2)), ProbeEvent::FOUND);
-    EXPECT_EQ(step(probe, probing(true), at(3)), ProbeEvent::NONE);
-    EXPECT_EQ(probe.position[0], 2);
-    EXPECT_EQ(probe.trips, 1U);
+    EXPECT_EQ(probe.step(probing(false), at(1)), ProbeEvent::NONE);
+    EXPECT_EQ(probe.step(probing(true), at(2)), ProbeEvent::FOUND);
+    EXPECT_EQ(probe.step(probing(true), at(3)), ProbeEvent::NONE);
+    EXPECT_EQ(status_of(probe).probed_pos[0], 2);
+    EXPECT_EQ(probe.trips(), 1U);
 }
 
 TEST(ProbePart, AMoveAwayEndsWhereContactIsLost) {
     TouchProbe probe;
-    EXPECT_EQ(step(probe, probing(true, true), at(1)), ProbeEvent::NONE);
-    EXPECT_EQ(step(probe, probing(false, true), at(2)), ProbeEvent::FOUND);
+    EXPECT_EQ(probe.step(probing(true, true), at(1)), ProbeEvent::NONE);
+    EXPECT_EQ(probe.step(probing(false, true), at(2)), ProbeEvent::FOUND);
 }
 
 TEST(ProbePart, EachProbingMoveBeginsAnew) {
     TouchProbe probe;
-    step(probe, probing(true), at(1));
-    EXPECT_EQ(step(probe, probing(true, false, 6), at(4)), ProbeEvent::FOUND);
-    EXPECT_EQ(probe.trips, 2U);
-    take(probe, ClearProbeFlag{});
-    EXPECT_FALSE(probe.isTripped);
+    probe.step(probing(true), at(1));
+    EXPECT_EQ(probe.step(probing(true, false, 6), at(4)), ProbeEvent::FOUND);
+    EXPECT_EQ(probe.trips(), 2U);
+    probe.take(ClearProbeFlag{});
+    EXPECT_FALSE(status_of(probe).isProbeTripped);
 }
 
 TEST(ProbePart, TouchedInAnotherMoveIsTold) {
     TouchProbe probe;
     ProbeInputs in;
     in.isClosed = true;
-    EXPECT_EQ(step(probe, in, at(0)), ProbeEvent::NONE) << "nothing moves";
+    EXPECT_EQ(probe.step(in, at(0)), ProbeEvent::NONE) << "nothing moves";
     in.isMoving = true;
-    EXPECT_EQ(step(probe, in, at(0)), ProbeEvent::TOUCHED);
-    probe.wasClosed = true;
-    EXPECT_EQ(step(probe, in, at(0)), ProbeEvent::NONE) << "it is the edge that counts";
+    EXPECT_EQ(probe.step(in, at(0)), ProbeEvent::TOUCHED);
+    probe.end_cycle(true);
+    EXPECT_EQ(probe.step(in, at(0)), ProbeEvent::NONE) << "it is the edge that counts";
 }
 
 TEST(ProbePart, BrakingBehindAContactIsNoTouch) {
     TouchProbe probe;
-    step(probe, probing(true), at(1));
+    probe.step(probing(true), at(1));
     ProbeInputs in;
     in.isClosed = in.isMoving = in.isDropping = true;
-    EXPECT_EQ(step(probe, in, at(2)), ProbeEvent::NONE);
+    EXPECT_EQ(probe.step(in, at(2)), ProbeEvent::NONE);
 }
 
 /// An earlier trip excuses no contact that comes while nothing brakes, and no braking one that follows no
@@ -69,10 +75,10 @@ TEST(ProbePart, ATripOrAStopAloneExcusesNoContact) {
     TouchProbe probe;
     ProbeInputs in;
     in.isClosed = in.isMoving = in.isDropping = true;
-    EXPECT_EQ(step(probe, in, at(2)), ProbeEvent::TOUCHED) << "nothing has been probed";
-    step(probe, probing(true), at(1));
+    EXPECT_EQ(probe.step(in, at(2)), ProbeEvent::TOUCHED) << "nothing has been probed";
+    probe.step(probing(true), at(1));
     in.isDropping = false;
-    EXPECT_EQ(step(probe, in, at(2)), ProbeEvent::TOUCHED) << "its stop is over";
+    EXPECT_EQ(probe.step(in, at(2)), ProbeEvent::TOUCHED) << "its stop is over";
 }
 
 }  // namespace
