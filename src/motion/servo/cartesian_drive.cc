@@ -9,8 +9,8 @@ void step_alignment(ControllerParts &parts, const Inputs &in) noexcept {
     check_probe(parts, in);
     parts.executor.step(parts.cycle);
     const bool isWanted = parts.link->queue_depth.load(std::memory_order_relaxed) != 0 ||
-                          !areAxesAtRest(parts.jogs) || areAsked(parts.offsets, in.axis_offset);
-    const AlignmentStep result = step(parts.alignment, parts.joints, isWanted, parts.model.period_s());
+                          !areAxesAtRest(parts.jogs) || parts.offsets.isMotionRequested(in.axis_offset);
+    const AlignmentStep result = parts.alignment.step(parts.joints, isWanted, parts.model.period_s());
     if (result == AlignmentStep::STOPPED) {
         parts.power.set_mode(Mode::FREE);  // each joint moves by itself
         rest_at(parts.jogs, commanded(parts.joints).data(), parts.programmed_pose());
@@ -20,17 +20,12 @@ void step_alignment(ControllerParts &parts, const Inputs &in) noexcept {
 geometry::Pose add_offsets(ControllerParts &parts, const Inputs &in, const geometry::Pose &pose,
                            const TravelRange &programmed) noexcept {
     ExternalOffsets &offsets = parts.offsets;
-    const TravelRange here{{pose, pose}, offsets.shared.at(pose)};
-    if (parts.retracing.retrace.isEmpty()) {
-        offsets.travelled = here;
-    }
-    offsets.travelled.include(here);
     OffsetInputs inputs{in.axis_offset, parts.model.limits(), programmed};
-    inputs.programmed.include(offsets.travelled);
+    inputs.programmed.include(offsets.extend_travelled(pose, parts.retracing.isEmpty()));
     inputs.isHonoured = parts.power.isReady() && parts.model.limits().homed.areAll;
     inputs.period_s = parts.model.period_s();
-    step(offsets, inputs);
-    return pose + offsets.pose;
+    offsets.step(inputs);
+    return pose + offsets.pose();
 }
 
 void command_pose(ControllerParts &parts, const geometry::Pose &pose) noexcept {
@@ -49,7 +44,7 @@ void command_pose(ControllerParts &parts, const geometry::Pose &pose) noexcept {
         parts.stop_category_0(FaultKind::KINEMATICS_JUMP, jump, distance);
         return;
     }
-    follow_pose(parts.position, pose, model.period_s());
+    parts.position.follow_pose(pose, model.period_s());
     for (int j = 0; j < model.num_pose_joints(); ++j) {
         const auto n = static_cast<std::size_t>(j);
         follow(parts.joints[j], positions[n], model.period_s());

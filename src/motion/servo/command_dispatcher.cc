@@ -22,8 +22,8 @@ void limit_reverse_run(Retracing &retracing, const CommandBody &body) noexcept {
         std::holds_alternative<SpindleOn>(body) || std::holds_alternative<SpindleOff>(body) ||
         std::holds_alternative<SpindleOrient>(body) || std::holds_alternative<SpindleBrake>(body) ||
         std::holds_alternative<SetToolOffset>(body) || std::holds_alternative<Abort>(body);
-    if (isChange && !retracing.retrace.isAway()) {
-        retracing.retrace.clear();
+    if (isChange && !retracing.isAway()) {
+        retracing.clear();
     }
 }
 
@@ -57,7 +57,7 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
         [&](const OneOf<SetAmplifier, LoadCompensation> auto &c) { return take(parts.joints, c, isEnabled); },
         [&](const OneOf<Pause, Resume, StepOnce, SetMaxVelocity> auto &c) { return parts.holds.take(c); },
         [&](const SetReverse &c) {
-            const bool isPathRecorded = parts.power.mode() == Mode::COORD && parts.retracing.retrace.hasWay();
+            const bool isPathRecorded = parts.power.mode() == Mode::COORD && parts.retracing.hasPath();
             return parts.holds.take(c, isPathRecorded);
         },
         [&](const SetScale &c) {

@@ -12,13 +12,12 @@ ExtraJointInputs extra_inputs(const ControllerParts &parts, const Inputs &in) no
 }
 
 void command_extra_joints(ControllerParts &parts, const Inputs &in) noexcept {
-    const ExtraJointEvents events = step(parts.extra, extra_inputs(parts, in));
-    for (int j = parts.extra.first; j < parts.model.num_joints(); ++j) {
+    const ExtraJointEvents events = parts.extra.step(extra_inputs(parts, in));
+    for (int j = parts.extra.first(); j < parts.model.num_joints(); ++j) {
         const auto n = static_cast<std::size_t>(j);
-        const ExtraJoint &extra = parts.extra.joint[n];
-        if (extra.state != Following::NONE) {
-            follow(parts.joints[j], extra.planner.position(), parts.model.period_s());
-            parts.jogs.joint[n].planner.reset(extra.planner.position());
+        if (parts.extra.isCommanding(j)) {
+            follow(parts.joints[j], parts.extra.position(j), parts.model.period_s());
+            parts.jogs.joint[n].planner.reset(parts.extra.position(j));
         }
     }
     for (std::uint32_t beyond = events.beyond; beyond != 0; beyond &= beyond - 1) {
@@ -40,8 +39,8 @@ void command_motors(ControllerParts &parts) noexcept {
     if (isEnabled) [[likely]] {
         return;
     }
-    follow_joints(parts.position, parts.model.kinematics(), commanded(parts.joints).data(),
-                  parts.position.isFbValid);
+    parts.position.follow_joints(parts.model.kinematics(), commanded(parts.joints).data(),
+                                 parts.position.isFbValid());
     const geometry::Pose pose = parts.programmed_pose();
     parts.executor.set_position(pose);
     reset_axes(parts.jogs, pose);
@@ -51,7 +50,7 @@ void command_spindles(ControllerParts &parts, const Inputs &in) noexcept {
     const trajectory::Executor &executor = parts.executor;
     const trajectory::TapDemand &tap = executor.output().tap;
     SpindleCycle cycle{
-        parts.position.cmd[geometry::AXIS_X], {tap.spindle, tap.factor}, parts.model.period_s()};
+        parts.position.cmd()[geometry::AXIS_X], {tap.spindle, tap.factor}, parts.model.period_s()};
     for (int n = 0; n < parts.model.num_spindles(); ++n) {
         const trajectory::SpindleTrack &track = executor.spindle(n).track;
         cycle.counted[static_cast<std::size_t>(n)] = {track.turns_per_s(), track.step()};

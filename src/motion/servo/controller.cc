@@ -58,7 +58,7 @@ void Controller::command_joints(const Inputs &in) noexcept {
         step_indexers(parts_, in);
     }
     motion_mode(parts_.power.mode()).step(parts_, in);
-    if (parts_.extra.count > 0) [[unlikely]] {
+    if (parts_.extra.count() > 0) [[unlikely]] {
         command_extra_joints(parts_, in);
     }
 }

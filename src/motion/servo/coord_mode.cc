@@ -13,9 +13,9 @@ void record_path(ControllerParts &parts, const geometry::Pose &pose) noexcept {
     const double t = limits.period_s;
     for (int j = 0; j < limits.joints; ++j) {
         const Joint &joint = parts.joints[j];
-        record_joint(parts.retracing, j, joint.vel_cmd * t, joint.acc_cmd * t * t);
+        parts.retracing.record_joint(j, joint.vel_cmd * t, joint.acc_cmd * t * t);
     }
-    record(parts.retracing, pose, limits);
+    parts.retracing.record(pose, limits);
 }
 
 /// The pose of the path, or behind it in reverse run.
@@ -37,10 +37,10 @@ geometry::Pose path_pose(ControllerParts &parts) noexcept {
                            holds.reverse_rate()};
     const RetraceLimits limits = parts.model.retrace_limits();
     const double t = limits.period_s;
-    for (int j = 0; j < limits.joints && parts.retracing.retrace.isMoving(); ++j) {
-        follow_joint(parts.retracing, j, parts.joints[j].vel_cmd * t, parts.joints[j].acc_cmd * t * t);
+    for (int j = 0; j < limits.joints && parts.retracing.isMoving(); ++j) {
+        parts.retracing.follow_joint(j, parts.joints[j].vel_cmd * t, parts.joints[j].acc_cmd * t * t);
     }
-    if (motion::step(parts.retracing, pose, in, limits)) [[unlikely]] {
+    if (parts.retracing.step(pose, in, limits)) [[unlikely]] {
         executor.set_position(pose);
     }
     return pose;
@@ -72,18 +72,18 @@ void check_joint_limits(ControllerParts &parts) noexcept {
 
 /// Keeps the path for reverse run as far back as it may be driven.
 void update_recorded_path(ControllerParts &parts, const geometry::Pose &pose) noexcept {
-    if (parts.retracing.retrace.isAway()) {
+    if (parts.retracing.isAway()) {
         return;
     }
     // Reverse run does not pass a tapped hole or a thread without the spindle in step, nor a lock.
     const bool isOneWay = parts.executor.output().tap.spindle >= 0 || parts.executor.locked_spindle() >= 0 ||
                           parts.indexers.busy() != 0;
     // External offsets are not part of the recorded path, so it is recorded only where it is needed.
-    const bool isWanted = parts.holds.isAdaptiveFeedEnabled() || parts.offsets.axes == 0;
+    const bool isWanted = parts.holds.isAdaptiveFeedEnabled() || parts.offsets.isEmpty();
     if (isWanted && !isOneWay) {
         record_path(parts, pose);
     } else {
-        parts.retracing.retrace.clear();
+        parts.retracing.clear();
     }
 }
 
@@ -100,14 +100,14 @@ void CoordMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
     }
     const geometry::Pose pose = path_pose(parts);
     geometry::Pose target = pose;
-    if (parts.offsets.axes != 0) [[unlikely]] {
-        target = add_offsets(parts, in, pose, path_range(*parts.link, pose, parts.offsets.shared));
+    if (!parts.offsets.isEmpty()) [[unlikely]] {
+        target = add_offsets(parts, in, pose, path_range(*parts.link, pose, parts.offsets.shared()));
     }
     check_probe(parts, in);
     command_pose(parts, target);
     if (parts.power.mode() == Mode::COORD) [[likely]] {  // a stop may have left it
         const bool areJointsAxes = parts.model.map().areJointsAxes();
-        if (!areJointsAxes && hasDropped(parts.joint_start, parts.executor.snapshot())) [[unlikely]] {
+        if (!areJointsAxes && parts.joint_start.hasDropped(parts.executor.snapshot())) [[unlikely]] {
             parts.publish_joint_start();
         }
         check_joint_limits(parts);

@@ -8,8 +8,8 @@ std::uint32_t read_feedback(ControllerParts &parts, const Inputs &in) noexcept {
         parts.homing.foreign->read_pins();
     }
     const PerJoint measured = read_feedback(parts.joints, in);
-    read_feedback(parts.position, parts.model.kinematics(), measured.data(),
-                  parts.model.limits().homed.areAll);
+    parts.position.read_feedback(parts.model.kinematics(), measured.data(),
+                                 parts.model.limits().homed.areAll);
     return measure(parts.spindles, in);
 }
 

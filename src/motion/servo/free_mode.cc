@@ -6,7 +6,7 @@
 namespace mw::motion {
 
 CommandResult FreeMode::enter(ControllerParts &parts) const noexcept {
-    forget(parts.alignment);
+    parts.alignment.cancel();
     return {};
 }
 
@@ -18,7 +18,7 @@ void FreeMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
     const std::uint32_t locked = parts.indexers.held();
     for (int j = 0; j < parts.model.num_joints(); ++j) {
         const auto n = static_cast<std::size_t>(j);
-        if (parts.extra.joint[n].state != Following::NONE) {
+        if (parts.extra.isCommanding(j)) {
             continue;
         }
         Jog &jog = parts.jogs.joint[n];
@@ -27,10 +27,10 @@ void FreeMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
         }
         follow(parts.joints[j], jog.planner.position, period_s);
     }
-    motion::step(parts.offsets, {in.axis_offset, limits, {}, false, period_s});
+    parts.offsets.step({in.axis_offset, limits, {}, false, period_s});
     const kinematics::Kinematics &kinematics = parts.model.kinematics();
     const bool isKnown = kinematics.kind() == kinematics::Kind::BOTH && isAllHomed(parts.homing);
-    follow_joints(parts.position, kinematics, commanded(parts.joints).data(), isKnown);
+    parts.position.follow_joints(kinematics, commanded(parts.joints).data(), isKnown);
 }
 
 bool FreeMode::isJogging(const ControllerParts &parts) const noexcept {

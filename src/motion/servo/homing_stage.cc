@@ -38,8 +38,8 @@ geometry::Pose home_pose(const Settings &settings) noexcept {
 }
 
 [[gnu::cold]] void start_homing(ControllerParts &parts, const Inputs &in) noexcept {
-    hold(parts.extra);
-    const bool isMoving = isAnythingMoving(parts) || !areAtRest(parts.extra) || parts.indexers.busy() != 0;
+    parts.extra.hold();
+    const bool isMoving = isAnythingMoving(parts) || !parts.extra.areAtRest() || parts.indexers.busy() != 0;
     const HomeConditions conditions{true, parts.power.mode(), in.isHomingInhibited, isMoving,
                                     inactive_joints(parts.joints)};
     const homing::Failure why = begin_due(parts.homing, conditions);
@@ -99,12 +99,12 @@ void step_homing(ControllerParts &parts, const Inputs &in) noexcept {
         parts.raise(FaultKind::HOMING_CLAMPED, std::countr_zero(clamped));
     }
     const MachineModel &model = parts.model;
-    const bool isOtherMap = parts.offsets.shared.joints != 0 && !model.map().isAsIn(model.kinematics());
+    const bool isOtherMap = parts.offsets.shared().joints != 0 && !model.map().isAsIn(model.kinematics());
     if (model.limits().homed.joints != homed_mask(homing) || isOtherMap) [[unlikely]] {
         if (parts.power.mode() == Mode::FREE && isAllHomed(homing)) {
             // In other modes the pose commands the joints.
-            find_again(parts.position, model.kinematics(), commanded(parts.joints).data(),
-                       home_pose(model.settings()));
+            parts.position.find_again(model.kinematics(), commanded(parts.joints).data(),
+                                      home_pose(model.settings()));
         }
         parts.publish_limits();
     }

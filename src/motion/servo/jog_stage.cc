@@ -27,7 +27,7 @@ JogRange range_of(const ControllerParts &parts, const JogTarget &target) noexcep
     JogRange range =
         jog_range(parts.model.limits(), parts.model.map(), target, commanded(parts.joints).data());
     if (!target.isJoint) {
-        narrow(range, parts.offsets, target.index);
+        parts.offsets.narrow(range, target.index);
     }
     return range;
 }

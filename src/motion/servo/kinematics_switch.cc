@@ -10,7 +10,7 @@ namespace {
 /// stays.
 [[gnu::cold]] void switch_type(ControllerParts &parts, kinematics::TypeSwitch &types) noexcept {
     const kinematics::Kinematics &kinematics = parts.model.kinematics();
-    geometry::Pose pose = parts.position.cmd;
+    geometry::Pose pose = parts.position.cmd();
     bool isSwitched = types.switch_to(parts.types.wanted());
     if (!isSwitched) {
         parts.raise(FaultKind::NO_KINEMATICS_TYPE, -1, parts.types.wanted());
@@ -28,7 +28,7 @@ namespace {
     if (!isSwitched) {
         return;
     }
-    parts.position.cmd = pose;
+    parts.position.set_cmd(pose);
     parts.restart_path(pose);
     rest_at(parts.jogs, commanded(parts.joints).data(), pose);
     parts.publish_joint_start();

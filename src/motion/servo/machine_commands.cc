@@ -24,8 +24,7 @@ void apply(ControllerParts &parts, const SetParameter &command) noexcept {
     }
     const bool isHomePose = changed == Parameter::AXIS_FIRST_PLACE;
     if (isHomePose && !parts.model.map().areJointsAxes() && parts.model.limits().homed.joints == 0) {
-        parts.position.cmd[command.index] = command.value;
-        parts.position.fb[command.index] = command.value;
+        parts.position.assume(command.index, command.value);
     }
 }
 
@@ -50,19 +49,19 @@ CommandResult take(ControllerParts &parts, const Enable &, const Inputs &in) noe
     }
     parts.power.switch_on();
     switch_on(parts.joints);
-    start_at_zero(parts.offsets, in);
-    start_at(parts.jogs, commanded(parts.joints).data(), parts.position.cmd, in);
+    parts.offsets.start_at_zero(in);
+    start_at(parts.jogs, commanded(parts.joints).data(), parts.position.cmd(), in);
     parts.indexers.switch_on(unlocked_pins(in));
-    switch_on(parts.extra, extra_inputs(parts, in));
+    parts.extra.switch_on(extra_inputs(parts, in));
     parts.coord_error = false;
-    parts.restart_path(parts.position.cmd);
+    parts.restart_path(parts.position.cmd());
     parts.publish_joint_start();
     return {};
 }
 
 CommandResult take(ControllerParts &parts, const SetMode &command) noexcept {
     const Mode mode = command.mode;
-    const bool isOffsetMoving = mode == Mode::FREE && !areAtRest(parts.offsets);
+    const bool isOffsetMoving = mode == Mode::FREE && !parts.offsets.isAtRest();
     const ModeConditions conditions{
         parts.homing.isUnderWay(), isAnythingMoving(parts) || isOffsetMoving || parts.indexers.busy() != 0,
         parts.model.kinematics().kind() != kinematics::Kind::IDENTITY, isAllHomed(parts.homing)};
@@ -103,7 +102,7 @@ CommandResult take(ControllerParts &parts, const SetNumJoints &command, const In
     const int loaded = parts.joints.loaded;
     const kinematics::IdentityMap *identity = parts.model.kinematics().identity();
     const int least = identity != nullptr ? std::min(identity->num_joints, loaded) : 1;
-    const int needed = parts.extra.count > 0 ? loaded : least;  // extra joints are the last ones
+    const int needed = parts.extra.count() > 0 ? loaded : least;  // extra joints are the last ones
     if (parts.power.isEnabled()) {
         return {Reason::SWITCHED_ON};
     }
@@ -129,7 +128,7 @@ CommandResult take(ControllerParts &parts, const SetJointActive &command) noexce
     if (areAlone) {  // the pose is that of all joints from here, also for the next command
         const kinematics::Kinematics &kinematics = parts.model.kinematics();
         const bool isKnown = kinematics.kind() == kinematics::Kind::BOTH && isAllHomed(parts.homing);
-        follow_joints(parts.position, kinematics, commanded(parts.joints).data(), isKnown);
+        parts.position.follow_joints(kinematics, commanded(parts.joints).data(), isKnown);
     }
     return result;
 }

@@ -21,7 +21,7 @@ const MotionMode &motion_mode(Mode mode) noexcept {
 
 bool isAnythingMoving(const ControllerParts &parts) noexcept {
     const bool isOnPath =
-        !parts.executor.isAtRest() || parts.retracing.retrace.isMoving() || parts.alignment.areUnderWay();
+        !parts.executor.isAtRest() || parts.retracing.isMoving() || parts.alignment.isMoving();
     return isOnPath || motion_mode(parts.power.mode()).isJogging(parts);
 }
 

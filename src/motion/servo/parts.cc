@@ -37,10 +37,9 @@ void ControllerParts::use_joints(int count) noexcept {
     joints.count = count;
     jogs.num_joints = count;
     homing.num_joints = count;
-    extra.count = model.num_extra_joints();
-    extra.first = count - extra.count;
+    extra.use_joints(count - model.num_extra_joints(), model.num_extra_joints());
     homing.num_to_home =
-        identity != nullptr && extra.count == 0 ? std::min(identity->num_joints, count) : count;
+        identity != nullptr && extra.count() == 0 ? std::min(identity->num_joints, count) : count;
     homing.module().set_num_joints(homing.num_to_home);
     const AxisMap &map = model.map();
     for (int j = 0; j < count; ++j) {
@@ -72,7 +71,7 @@ void ControllerParts::stop_category_1(FaultKind kind, int index, double value) n
     if (power.begin_stop()) {
         raise(kind, index, value);
         brake();
-        stop(offsets);
+        offsets.stop();
     }
 }
 
@@ -80,14 +79,14 @@ void ControllerParts::brake() noexcept {
     abort(homing, homing::event::ABORT);
     executor.drop();
     stop(jogs);
-    stop(alignment);
-    hold(extra);
+    alignment.stop();
+    extra.hold();
 }
 
 void ControllerParts::switch_off() noexcept {
     executor.stop_now();
-    stop_at_once(offsets);
-    forget(alignment);
+    offsets.stop_at_once();
+    alignment.cancel();
     power.switch_off();
     holds.release();
     motion::switch_off(joints);
@@ -117,55 +116,54 @@ CommandResult ControllerParts::align_joints() noexcept {
     const kinematics::Kind kind = kinematics.kind();
     const bool isPoseKnown =
         areJointsAxes || kind != kinematics::Kind::BOTH ||
-        isWithinOneStep(kinematics, position.cmd, commanded(joints), model.joint_step_limit());
+        isWithinOneStep(kinematics, position.cmd(), commanded(joints), model.joint_step_limit());
     if (!isPoseKnown) {
         return {Reason::POSE_UNKNOWN};
     }
     PerJoint targets = commanded(joints);
     const bool hasInverse = kind == kinematics::Kind::IDENTITY || kind == kinematics::Kind::BOTH;
-    if (!hasInverse || !isAnswered(kinematics.inverse(position.cmd, targets.data()))) {
+    if (!hasInverse || !isAnswered(kinematics.inverse(position.cmd(), targets.data()))) {
         return {};
     }
     const int misaligned = areJointsAxes ? find_misaligned_joint(joints, targets, model.settings()) : -1;
     if (misaligned >= 0) {
         return result_of(misaligned, Reason::SIDE_APART);
     }
-    begin(alignment, joints, targets, model.limits());
+    alignment.begin(joints, targets, model.limits());
     return {};
 }
 
 void ControllerParts::restart_path(const geometry::Pose &pose) noexcept {
     executor.drop();
     executor.set_position(pose);
-    retracing.retrace.clear();
+    retracing.clear();
 }
 
 void ControllerParts::publish_joint_start() noexcept {
     if (model.map().areJointsAxes()) {
         return;
     }
-    joint_start.joints = commanded(joints);
-    ++joint_start.count;
+    joint_start.set(commanded(joints));
     publish_limits();
 }
 
 void ControllerParts::publish_limits() noexcept {
     model.fold({homed_mask(homing), isAllHomed(homing)});
     const FoldedLimits &limits = model.limits();
-    configure(offsets, limits, model.map());
+    offsets.configure(limits, model.map());
     indexers.set_joints(limits.locks);
     PathLimits out;
-    out.offset_axes = offsets.axes;
+    out.offset_axes = offsets.axes();
     out.indexer = limits.indexer;
     out.limits = limits.path;
     out.low = limits.low;
     out.high = limits.high;
     out.axes = limits.axes;
     out.joints = limits.path_joints;
-    out.shared = offsets.shared;
-    out.standing = joint_start.joints;
-    out.side = model.kinematics().side(position.cmd);
-    out.position_changes = joint_start.count;
+    out.shared = offsets.shared();
+    out.standing = joint_start.joints();
+    out.side = model.kinematics().side(position.cmd());
+    out.position_changes = joint_start.changes();
     out.corner_scale = model.settings().get(Parameter::TRAJ_CORNER_SCALE);
     out.areTolerancesAdded = model.settings().isSet(Parameter::TRAJ_ADDED_TOLERANCES);
     link->limits.write(out);

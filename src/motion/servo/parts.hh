@@ -60,7 +60,7 @@ struct ControllerParts {
     /// The move that the path is executing; nullptr for none.
     const trajectory::MoveTag *active_move() const noexcept;
     /// Commanded pose without external offsets.
-    geometry::Pose programmed_pose() const noexcept { return without(offsets, position.cmd); }
+    geometry::Pose programmed_pose() const noexcept { return offsets.remove_from(position.cmd()); }
 
     /// Prepares a mode in which the pose commands the joints. They must be at its joint positions, except for
     /// a small difference that the alignment removes.

@@ -7,7 +7,7 @@ void apply_holds(ControllerParts &parts, const Inputs &in) noexcept {
     Holds &holds = parts.holds;
     holds.step({in.adaptive_feed, in.isFeedHeld, in.isFeedInhibited,
                 parts.link->steps_done.load(std::memory_order_acquire)});
-    const bool isReversing = holds.isReverseWanted() || parts.retracing.retrace.isAway();
+    const bool isReversing = holds.isReverseWanted() || parts.retracing.isAway();
     parts.executor.hold(holds.isHoldWanted() || parts.alignment.isMisaligned() ||
                         (parts.power.mode() == Mode::COORD && isReversing));
 }

@@ -22,7 +22,7 @@ void check_probe(ControllerParts &parts, const Inputs &in) noexcept {
         probe.isMoving = !isIgnored && !parts.power.isStopping() && isAnythingMoving(parts);
         probe.isDropping = executor.snapshot().isDropping;
     }
-    switch (parts.probe.step(probe, without(parts.offsets, parts.position.fb))) {
+    switch (parts.probe.step(probe, parts.offsets.remove_from(parts.position.fb()))) {
     case ProbeEvent::NONE: break;
     case ProbeEvent::FOUND: executor.drop(); break;
     case ProbeEvent::TOUCHED:

@@ -106,8 +106,8 @@ void SafetyMonitor::check_servo_thread(ControllerParts &parts, std::int64_t time
 }
 
 void finish_stop(ControllerParts &parts) noexcept {
-    if (parts.power.isStopping() && !isAnythingMoving(parts) && areAtRest(parts.offsets) &&
-        areAtRest(parts.extra)) [[unlikely]] {
+    if (parts.power.isStopping() && !isAnythingMoving(parts) && parts.offsets.isAtRest() &&
+        parts.extra.areAtRest()) [[unlikely]] {
         parts.switch_off();
     }
 }

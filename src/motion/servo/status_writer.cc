@@ -96,7 +96,7 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
     s.last_path_id = parts.link->last_done_id.load(std::memory_order_acquire);
     s.isInPosition = !isAnythingMoving(parts) && parts.indexers.busy() == 0 &&
                      (parts.power.mode() != Mode::COORD || s.queue_depth == 0) && !parts.types.isPending();
-    s.current_velocity = parts.position.velocity;
+    s.current_velocity = parts.position.velocity();
     const trajectory::MoveTag *tag = parts.active_move();
     if (tag == nullptr) {
         s.active_path_id = 0;
@@ -127,7 +127,7 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
     v.epoch = now.epoch;
     v.mode = parts.power.mode();
     v.isEnabled = parts.power.isEnabled();
-    v.isStopping = parts.power.isStopping() || parts.retracing.isPathLeft;
+    v.isStopping = parts.power.isStopping() || parts.retracing.isPathLeft();
     v.enables = parts.power.enables();
     v.limits_version = parts.model.limits_version();
     v.position = programmed;
@@ -156,8 +156,8 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
     v.type_asks = parts.types.requests();
     v.isTypePending = parts.types.isPending();
     parts.link->view.write(v);
-    if (parts.offsets.axes != 0) [[unlikely]] {
-        parts.link->offsets.write(range(parts.offsets));
+    if (!parts.offsets.isEmpty()) [[unlikely]] {
+        parts.link->offsets.write(parts.offsets.range());
         std::atomic_thread_fence(std::memory_order_seq_cst);  // before the extent of the path is read again
     }
 }
@@ -180,7 +180,7 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
     if (out.settings_version != parts.model.settings().version()) [[unlikely]] {
         fill_settings(parts.model.settings(), out);
     }
-    fill(parts.position, s);
+    parts.position.fill(s);
     parts.probe.fill(in.isProbeClosed, s);
     parts.holds.fill(s);
     parts.outputs.fill(in, out);
@@ -190,10 +190,10 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
     fill(parts.joints,
          {parts.power.isEnabled(), parts.jogs.areLimitsOverridden, parts.model.limits().homed.joints}, out);
     fill(parts.jogs, parts.power.mode(), programmed, out);
-    if (parts.offsets.axes != 0 || !out.areOffsetsQuiet) [[unlikely]] {
-        fill(parts.offsets, out);
+    if (!parts.offsets.isEmpty() || !out.areOffsetsQuiet) [[unlikely]] {
+        parts.offsets.fill(out);
     }
-    fill(parts.extra, parts.model.limits().homed.joints, out);
+    parts.extra.fill(parts.model.limits().homed.joints, out);
     out.isHomingQuiet = out.isHomingQuiet && parts.indexers.isEmpty();  // they add to its outputs
     fill(parts.homing, out);
     parts.indexers.fill(out);
@@ -209,7 +209,7 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
         sample.time_ns = in.time_ns;
         sample.isInMotion = isAnythingMoving(parts) ? 1 : 0;
         sample.pose_kind = parts.types.switches();
-        sample.isRetracing = parts.retracing.retrace.isAway() ? 1 : 0;
+        sample.isRetracing = parts.retracing.isAway() ? 1 : 0;
         sample.programmed_pos_cmd = programmed;
         trace(*parts.channels, s, parts.joints, sample);
     }

@@ -24,7 +24,7 @@ void step_axes_together(ControllerParts &parts, std::uint32_t locked) noexcept {
     const MachineModel &model = parts.model;
     PerJoint joint_positions = commanded(parts.joints);
     trajectory::JointLimits joint_limits = model.limits().path_joints;
-    take_off(parts.offsets, joint_positions, joint_limits);
+    parts.offsets.remove_from(joint_positions, joint_limits);
     const TeleopMachine machine{model.kinematics(),
                                 model.limits(),
                                 joint_limits,
@@ -32,7 +32,7 @@ void step_axes_together(ControllerParts &parts, std::uint32_t locked) noexcept {
                                 model.num_pose_joints(),
                                 parts.holds.jog_scale(),
                                 model.period_s(),
-                                model.kinematics().side(parts.position.cmd),
+                                model.kinematics().side(parts.position.cmd()),
                                 locked};
     const TeleopStop stopped = step_teleop(parts.jogs, machine);
     if (stopped.isNew && stopped.joint >= 0) {
@@ -92,8 +92,8 @@ void TeleopMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
     }
     parts.executor.step(parts.cycle);
     geometry::Pose pose = jogged_pose(parts);
-    if (parts.offsets.axes != 0) [[unlikely]] {
-        pose = add_offsets(parts, in, pose, jogged_range(parts.jogs, pose, parts.offsets.shared));
+    if (!parts.offsets.isEmpty()) [[unlikely]] {
+        pose = add_offsets(parts, in, pose, jogged_range(parts.jogs, pose, parts.offsets.shared()));
     }
     check_probe(parts, in);
     command_pose(parts, pose);

@@ -378,16 +378,13 @@ TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse) {
 /// A joint too many would be one that does not exist.
 TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside) {
     ExtraJoints extra;
-    extra.first = 2;
-    extra.count = 3;
+    extra.use_joints(2, 3);
     const std::array<JointInputs, MAX_JOINTS> pins{};
     const FoldedLimits limits;
     const ExtraJointInputs in{pins, {}, limits, ~0U, MotionRig::T};
-    switch_on(extra, in);
+    extra.switch_on(in);
     for (int j = 0; j < MAX_JOINTS; ++j) {
-        const bool isOne = j >= extra.first && j < extra.first + extra.count;
-        EXPECT_EQ(extra.joint[static_cast<std::size_t>(j)].state, isOne ? Following::READY : Following::NONE)
-            << j;
+        EXPECT_EQ(extra.isCommanding(j), j >= 2 && j < 5) << j;
     }
 }
 

@@ -3,46 +3,46 @@
 
 namespace mw::motion {
 
-void read_feedback(CartesianPosition &place, const kinematics::Kinematics &kinematics, const double *joints,
-                   bool areAllHomed) noexcept {
+void CartesianPosition::read_feedback(const kinematics::Kinematics &kinematics, const double *joints,
+                                      bool areAllHomed) noexcept {
     const kinematics::Kind kind = kinematics.kind();
     if (kind == kinematics::Kind::INVERSE_ONLY) {
-        place.fb = place.cmd;
+        fb_ = cmd_;
     }
     const bool isAsked =
         kind == kinematics::Kind::IDENTITY || (areAllHomed && kind != kinematics::Kind::INVERSE_ONLY);
-    place.isFbValid = isAsked && isAnswered(kinematics.forward(joints, place.fb));
+    fb_valid_ = isAsked && isAnswered(kinematics.forward(joints, fb_));
 }
 
-void follow_joints(CartesianPosition &place, const kinematics::Kinematics &kinematics, const double *joints,
-                   bool isKnown) noexcept {
-    place.velocity = 0;
+void CartesianPosition::follow_joints(const kinematics::Kinematics &kinematics, const double *joints,
+                                      bool isKnown) noexcept {
+    velocity_ = 0;
     if (kinematics.kind() == kinematics::Kind::IDENTITY || isKnown) {
-        kinematics.forward(joints, place.cmd);
+        kinematics.forward(joints, cmd_);
     }
 }
 
-void find_again(CartesianPosition &place, const kinematics::Kinematics &kinematics, const double *joints,
-                const geometry::Pose &first) noexcept {
-    geometry::Pose pose = place.cmd;
+void CartesianPosition::find_again(const kinematics::Kinematics &kinematics, const double *joints,
+                                   const geometry::Pose &first) noexcept {
+    geometry::Pose pose = cmd_;
     if (kinematics.kind() != kinematics::Kind::BOTH || isAnswered(kinematics.forward(joints, pose))) {
         return;
     }
     pose = first;
     if (isAnswered(kinematics.forward(joints, pose))) {
-        place.cmd = place.fb = pose;
+        cmd_ = fb_ = pose;
     }
 }
 
-void follow_pose(CartesianPosition &place, const geometry::Pose &pose, double period_s) noexcept {
-    place.velocity = geometry::norm_xyz(pose - place.cmd) / period_s;
-    place.cmd = pose;
+void CartesianPosition::follow_pose(const geometry::Pose &pose, double period_s) noexcept {
+    velocity_ = geometry::norm_xyz(pose - cmd_) / period_s;
+    cmd_ = pose;
 }
 
-void fill(const CartesianPosition &place, Status &status) noexcept {
-    status.isCartePosValid = place.isFbValid;
-    status.carte_pos_cmd = place.cmd;
-    status.carte_pos_fb = place.fb;
+void CartesianPosition::fill(Status &status) const noexcept {
+    status.isCartePosValid = fb_valid_;
+    status.carte_pos_cmd = cmd_;
+    status.carte_pos_fb = fb_;
 }
 
 }  // namespace mw::motion

@@ -23,19 +23,29 @@ struct JointStepLimit {
 /// In Cartesian modes the pose commands the joints: true when the step to the joint positions of the pose is
 /// possible in one cycle.
 bool isWithinOneStep(const kinematics::Kinematics &kinematics, const geometry::Pose &pose,
-                     const JointValues &here, const JointStepLimit &stride) noexcept;
+                     const JointValues &here, const JointStepLimit &limit) noexcept;
 /// The planner has checked the joint limits of its moves, so a larger step comes from a change of a pin of
 /// the kinematics. Returns the joint that would jump, -1 for none.
 int joint_that_jumps(const JointValues &positions, const JointValues &here,
-                     const JointStepLimit &stride) noexcept;
+                     const JointStepLimit &limit) noexcept;
 
 /// Joint positions at the start of a path.
-struct JointStart {
-    JointValues joints{};
-    std::uint32_t count = 0;  ///< counts how often they were published
-    std::uint64_t drops = 0;  ///< of paths, until now
+class JointStart {
+  public:
+    void set(const JointValues &joints) noexcept {
+        joints_ = joints;
+        ++changes_;
+    }
+    const JointValues &joints() const noexcept { return joints_; }
+    /// Counts calls of set().
+    std::uint32_t changes() const noexcept { return changes_; }
+    /// True once for each path that was dropped while the joints were not at its end.
+    bool hasDropped(const trajectory::Snapshot &now) noexcept;
+
+  private:
+    JointValues joints_{};
+    std::uint32_t changes_ = 0;
+    std::uint64_t drops_ = 0;  ///< of paths, until now
 };
-/// True once for each path that was dropped while the joints were not at its end.
-bool hasDropped(JointStart &standing, const trajectory::Snapshot &now) noexcept;
 
 }  // namespace mw::motion

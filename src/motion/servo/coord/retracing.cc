@@ -18,19 +18,6 @@ double square_xyz(const std::array<double, Changes::PADDED> &p) noexcept {
            p[geometry::AXIS_Z] * p[geometry::AXIS_Z];
 }
 
-/// A path that is dropped during reverse run ends at the current position.
-void follow_drops(Retracing &r, std::uint64_t drops) noexcept {
-    if (drops == r.drops_seen) [[likely]] {
-        return;
-    }
-    r.drops_seen = drops;
-    if (r.retrace.isAway()) {
-        r.isPathLeft = true;
-    } else {
-        r.retrace.clear();
-    }
-}
-
 /// Use of the limits by the largest changes.
 trajectory::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in) noexcept {
     trajectory::Retrace::Use use;
@@ -58,12 +45,6 @@ trajectory::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in)
     return use;
 }
 
-/// Compares the changes recorded since the last call with the limits; this takes longer than recording.
-void weigh(Retracing &r, const RetraceLimits &limits) noexcept {
-    r.retrace.include(use_of(r.changes, limits));
-    r.changes = {};
-}
-
 /// True where reverse run is so slow that an immediate stop is within all limits: the path stopped there, and
 /// reverse run has the recorded speeds.
 bool mayStandAtOnce(const Changes &last, const RetraceLimits &limits) noexcept {
@@ -75,85 +56,101 @@ bool mayStandAtOnce(const Changes &last, const RetraceLimits &limits) noexcept {
            use.a_over_j <= BEND_SHARE * t;
 }
 
-void follow_way(Retracing &r, const geometry::Pose &pose) noexcept {
-    Changes &last = r.last;
-    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        const double step = pose[i] - r.way_pose[i];
-        last.bend[at(i)] = step - last.step[at(i)];
-        last.step[at(i)] = step;
-    }
-    last.step_xyz2 = square_xyz(last.step);
-    last.bend_xyz2 = square_xyz(last.bend);
-    r.way_pose = pose;
-}
-
 }  // namespace
 
-bool step(Retracing &r, geometry::Pose &pose, const RetraceInputs &in, const RetraceLimits &limits) noexcept {
-    follow_drops(r, in.drops);
-    trajectory::Retrace &retrace = r.retrace;
-    const bool isFirst = !retrace.isAway() && in.isReverseWanted && !in.isStandingWanted && !in.isStopping;
-    if (!retrace.isAway() && !(isFirst && in.isPathHeld && retrace.isReady())) [[likely]] {
+/// A path that is dropped during reverse run ends at the current position.
+void Retracing::follow_drops(std::uint64_t drops) noexcept {
+    if (drops == drops_seen_) [[likely]] {
+        return;
+    }
+    drops_seen_ = drops;
+    if (retrace_.isAway()) {
+        path_left_ = true;
+    } else {
+        retrace_.clear();
+    }
+}
+
+/// Compares the changes recorded since the last call with the limits; this takes longer than recording.
+void Retracing::include_changes(const RetraceLimits &limits) noexcept {
+    retrace_.include(use_of(changes_, limits));
+    changes_ = {};
+}
+
+void Retracing::follow_pose(const geometry::Pose &pose) noexcept {
+    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
+        const double step = pose[i] - pose_[i];
+        last_.bend[at(i)] = step - last_.step[at(i)];
+        last_.step[at(i)] = step;
+    }
+    last_.step_xyz2 = square_xyz(last_.step);
+    last_.bend_xyz2 = square_xyz(last_.bend);
+    pose_ = pose;
+}
+
+bool Retracing::step(geometry::Pose &pose, const RetraceInputs &in, const RetraceLimits &limits) noexcept {
+    follow_drops(in.drops);
+    const bool isFirst = !retrace_.isAway() && in.isReverseWanted && !in.isStandingWanted && !in.isStopping;
+    if (!retrace_.isAway() && !(isFirst && in.isPathHeld && retrace_.isReady())) [[likely]] {
         return false;
     }
     if (isFirst) {
-        weigh(r, limits);
-        r.way_pose = pose;
-        r.last = {};
-        r.wasStill = false;
+        include_changes(limits);
+        pose_ = pose;
+        last_ = {};
+        stopping_ = false;
     }
-    const bool isStill = in.isStandingWanted || r.isPathLeft || in.isStopping;
+    const bool isStill = in.isStandingWanted || path_left_ || in.isStopping;
     // With ordinary braking it would move at the recorded speed of the path, visibly after the stop.
-    if (isStill && !r.wasStill && retrace.isMoving() && mayStandAtOnce(r.last, limits)) {
-        retrace.stand();
+    if (isStill && !stopping_ && retrace_.isMoving() && mayStandAtOnce(last_, limits)) {
+        retrace_.stand();
     }
-    r.wasStill = isStill;
+    stopping_ = isStill;
     const int direction = isStill ? 0 : in.isReverseWanted ? -1 : 1;
-    pose = retrace.step(limits.period_s, direction, in.rate);
-    follow_way(r, pose);
-    const bool isNewStart = r.isPathLeft && !retrace.isMoving();
+    pose = retrace_.step(limits.period_s, direction, in.rate);
+    follow_pose(pose);
+    const bool isNewStart = path_left_ && !retrace_.isMoving();
     if (isNewStart) {
-        r.isPathLeft = false;
-        retrace.clear();
+        path_left_ = false;
+        retrace_.clear();
     }
     return isNewStart;
 }
 
-void record(Retracing &r, const geometry::Pose &pose, const RetraceLimits &limits) noexcept {
-    alignas(16) std::array<double, Changes::PADDED> place;  // NOLINT: every element is set
-    std::memcpy(place.data(), pose.c.data(), sizeof pose.c);
-    place[geometry::AXIS_COUNT] = 0;
-    Changes &changes = r.changes;
-    if (r.retrace.isEmpty()) [[unlikely]] {
-        changes = {};
-        r.last_step = {};
+void Retracing::record(const geometry::Pose &pose, const RetraceLimits &limits) noexcept {
+    alignas(16) std::array<double, Changes::PADDED> position;  // NOLINT: every element is set
+    std::memcpy(position.data(), pose.c.data(), sizeof pose.c);
+    position[geometry::AXIS_COUNT] = 0;
+    if (retrace_.isEmpty()) [[unlikely]] {
+        changes_ = {};
+        last_step_ = {};
     } else {
         alignas(16) std::array<double, Changes::PADDED> step, bend;  // NOLINT: every element is set
 #pragma GCC unroll 5
         for (std::size_t i = 0; i < Changes::PADDED; ++i) {
-            step[i] = place[i] - r.last_place[i];
-            bend[i] = step[i] - r.last_step[i];
-            r.last_step[i] = step[i];
-            changes.step[i] = std::max(changes.step[i], std::abs(step[i]));
-            changes.bend[i] = std::max(changes.bend[i], std::abs(bend[i]));
+            step[i] = position[i] - last_position_[i];
+            bend[i] = step[i] - last_step_[i];
+            last_step_[i] = step[i];
+            changes_.step[i] = std::max(changes_.step[i], std::abs(step[i]));
+            changes_.bend[i] = std::max(changes_.bend[i], std::abs(bend[i]));
         }
-        changes.step_xyz2 = std::max(changes.step_xyz2, square_xyz(step));
-        changes.bend_xyz2 = std::max(changes.bend_xyz2, square_xyz(bend));
+        changes_.step_xyz2 = std::max(changes_.step_xyz2, square_xyz(step));
+        changes_.bend_xyz2 = std::max(changes_.bend_xyz2, square_xyz(bend));
     }
-    r.last_place = place;
-    if (r.retrace.record(pose)) [[unlikely]] {
-        weigh(r, limits);
+    last_position_ = position;
+    if (retrace_.record(pose)) [[unlikely]] {
+        include_changes(limits);
     }
 }
 
-void record_joint(Retracing &r, int j, double step, double bend) noexcept {
-    r.changes.joint_step[at(j)] = std::max(r.changes.joint_step[at(j)], std::abs(step));
-    r.changes.joint_bend[at(j)] = std::max(r.changes.joint_bend[at(j)], std::abs(bend));
+void Retracing::record_joint(int j, double step, double bend) noexcept {
+    changes_.joint_step[at(j)] = std::max(changes_.joint_step[at(j)], std::abs(step));
+    changes_.joint_bend[at(j)] = std::max(changes_.joint_bend[at(j)], std::abs(bend));
 }
 
-void follow_joint(Retracing &r, int j, double step, double bend) noexcept {
-    r.last.joint_step[at(j)] = step;
-    r.last.joint_bend[at(j)] = bend;
+void Retracing::follow_joint(int j, double step, double bend) noexcept {
+    last_.joint_step[at(j)] = step;
+    last_.joint_bend[at(j)] = bend;
 }
 
 }  // namespace mw::motion

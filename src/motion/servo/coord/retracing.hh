@@ -21,19 +21,6 @@ struct Changes {
     std::array<double, MAX_JOINTS> joint_step{}, joint_bend{};
 };
 
-/// Some megabytes, so never on a stack.
-struct Retracing {
-    trajectory::Retrace retrace;
-    bool isPathLeft = false;       ///< the path was dropped in reverse run
-    bool wasStill = false;         ///< commanded to stop in the last cycle
-    std::uint64_t drops_seen = 0;  ///< of the executor
-    Changes changes;
-    /// Recorded last.
-    alignas(16) std::array<double, Changes::PADDED> last_place{}, last_step{};
-    geometry::Pose way_pose;  ///< commanded last in reverse run
-    Changes last;             ///< in the last cycle of reverse run, with their signs
-};
-
 struct RetraceInputs {
     std::uint64_t drops = 0;  ///< of the executor
     bool isReverseWanted = false, isStandingWanted = false, isStopping = false;
@@ -46,17 +33,48 @@ struct RetraceLimits {
     int joints = 0;
     double period_s = 1e-3;
 };
-/// Changes the pose of the path to the pose to command: behind it in reverse run. True when the path was
-/// dropped in reverse run: the next path begins at `pose`.
-bool step(Retracing &retracing, geometry::Pose &pose, const RetraceInputs &in,
-          const RetraceLimits &limits) noexcept;
-/// Where joints are not axes, in reverse run before step(): the change of joint `j` in the last cycle, and
-/// the change of that change.
-void follow_joint(Retracing &retracing, int j, double step, double bend) noexcept;
+/// Some megabytes, so never on a stack.
+class Retracing {
+  public:
+    /// Changes the pose of the path to the pose to command: behind it in reverse run. True when the path was
+    /// dropped in reverse run: the next path begins at `pose`.
+    bool step(geometry::Pose &pose, const RetraceInputs &in, const RetraceLimits &limits) noexcept;
+    /// Where joints are not axes, in reverse run before step(): the change of joint `j` in the last cycle,
+    /// and the change of that change.
+    void follow_joint(int j, double step, double bend) noexcept;
 
-/// Records a commanded pose of the path for reverse run.
-void record(Retracing &retracing, const geometry::Pose &pose, const RetraceLimits &limits) noexcept;
-/// Where joints are not axes, before record(): the change of joint `j` in the last cycle, and of that change.
-void record_joint(Retracing &retracing, int j, double step, double bend) noexcept;
+    /// Records a commanded pose of the path for reverse run.
+    void record(const geometry::Pose &pose, const RetraceLimits &limits) noexcept;
+    /// Where joints are not axes, before record(): the change of joint `j` in the last cycle, and of that
+    /// change.
+    void record_joint(int j, double step, double bend) noexcept;
+    /// Forgets the recorded path.
+    void clear() noexcept { retrace_.clear(); }
+
+    /// Nothing is recorded.
+    bool isEmpty() const noexcept { return retrace_.isEmpty(); }
+    /// The recorded path leads back.
+    bool hasPath() const noexcept { return retrace_.hasWay(); }
+    /// The machine is behind the path.
+    bool isAway() const noexcept { return retrace_.isAway(); }
+    bool isMoving() const noexcept { return retrace_.isMoving(); }
+    /// The path was dropped in reverse run, which has not stopped yet.
+    bool isPathLeft() const noexcept { return path_left_; }
+
+  private:
+    void follow_drops(std::uint64_t drops) noexcept;
+    void include_changes(const RetraceLimits &limits) noexcept;
+    void follow_pose(const geometry::Pose &pose) noexcept;
+
+    trajectory::Retrace retrace_;
+    bool path_left_ = false;
+    bool stopping_ = false;         ///< commanded to stop in the last cycle
+    std::uint64_t drops_seen_ = 0;  ///< of the executor
+    Changes changes_;
+    /// Recorded last.
+    alignas(16) std::array<double, Changes::PADDED> last_position_{}, last_step_{};
+    geometry::Pose pose_;  ///< commanded last in reverse run
+    Changes last_;         ///< in the last cycle of reverse run, with their signs
+};
 
 }  // namespace mw::motion

@@ -6,13 +6,15 @@
 namespace mw::motion {
 namespace {
 
+using Following = ExtraJoints::Following;
+
 trajectory::FollowLimits limits_of(const FoldedLimits &limits, std::size_t n) noexcept {
-    const JogLimits &most = limits.joint_jog[n];
-    return {most.velocity, most.acceleration, most.jerk, limits.joints.low[n], limits.joints.high[n]};
+    const JogLimits &joint = limits.joint_jog[n];
+    return {joint.velocity, joint.acceleration, joint.jerk, limits.joints.low[n], limits.joints.high[n]};
 }
 
 /// `isChanged`: the pin has changed since the last cycle.
-Following next(const ExtraJoint &joint, bool isChanged, double period_s) noexcept {
+Following next_state(const ExtraJoints::ExtraJoint &joint, bool isChanged, double period_s) noexcept {
     switch (joint.state) {
     case Following::NONE: return Following::PIN;
     case Following::HELD:
@@ -26,12 +28,12 @@ Following next(const ExtraJoint &joint, bool isChanged, double period_s) noexcep
 
 }  // namespace
 
-ExtraJointEvents step(ExtraJoints &extra, const ExtraJointInputs &in) noexcept {
+ExtraJointEvents ExtraJoints::step(const ExtraJointInputs &in) noexcept {
     ExtraJointEvents events;
-    for (int j = extra.first; j < extra.first + extra.count; ++j) {
+    for (int j = first_; j < first_ + count_; ++j) {
         const auto n = static_cast<std::size_t>(j);
         const std::uint32_t bit = 1U << j;
-        ExtraJoint &joint = extra.joint[n];
+        ExtraJoint &joint = joint_[n];
         const double pin = in.pins[n].posthome_cmd;
         const bool isNumber = std::isfinite(pin);
         const bool isChanged = isNumber && pin != joint.pin;
@@ -45,10 +47,10 @@ ExtraJointEvents step(ExtraJoints &extra, const ExtraJointInputs &in) noexcept {
         const trajectory::FollowLimits limits = limits_of(in.limits, n);
         events.lost |= isNumber ? 0U : bit;
         const bool isTakenOver = joint.state == Following::NONE;
-        joint.state = next(joint, isChanged, in.period_s);
+        joint.state = next_state(joint, isChanged, in.period_s);
         if (isTakenOver) {  // the move before may have ended within this cycle
             joint.planner.reset(in.positions[n]);
-            joint.isLimitTold = false;
+            joint.limit_reported = false;
             continue;
         }
         if (joint.state != Following::PIN || !isNumber) {
@@ -57,35 +59,35 @@ ExtraJointEvents step(ExtraJoints &extra, const ExtraJointInputs &in) noexcept {
         }
         joint.planner.follow(pin, limits, in.period_s);
         const bool isBeyond = pin < limits.low || pin > limits.high;
-        events.beyond |= isBeyond && !joint.isLimitTold ? bit : 0U;
-        joint.isLimitTold = isBeyond;
+        events.beyond |= isBeyond && !joint.limit_reported ? bit : 0U;
+        joint.limit_reported = isBeyond;
     }
     return events;
 }
 
-void switch_on(ExtraJoints &extra, const ExtraJointInputs &in) noexcept {
-    for (int j = extra.first; j < extra.first + extra.count; ++j) {
+void ExtraJoints::switch_on(const ExtraJointInputs &in) noexcept {
+    for (int j = first_; j < first_ + count_; ++j) {
         const auto n = static_cast<std::size_t>(j);
-        ExtraJoint &joint = extra.joint[n];
+        ExtraJoint &joint = joint_[n];
         const double pin = in.pins[n].posthome_cmd;
         joint.planner.reset(in.positions[n]);
         joint.pin = std::isfinite(pin) ? pin : joint.pin;
         joint.state = (in.homed >> j & 1U) != 0 ? Following::READY : Following::NONE;
-        joint.isLimitTold = false;
+        joint.limit_reported = false;
     }
 }
 
-void hold(ExtraJoints &extra) noexcept {
-    for (int j = extra.first; j < extra.first + extra.count; ++j) {
-        ExtraJoint &joint = extra.joint[static_cast<std::size_t>(j)];
+void ExtraJoints::hold() noexcept {
+    for (int j = first_; j < first_ + count_; ++j) {
+        ExtraJoint &joint = joint_[static_cast<std::size_t>(j)];
         joint.state = joint.state == Following::NONE ? Following::NONE : Following::HELD;
         joint.still = 0;
     }
 }
 
-bool areAtRest(const ExtraJoints &extra) noexcept {
-    for (int j = extra.first; j < extra.first + extra.count; ++j) {
-        const ExtraJoint &joint = extra.joint[static_cast<std::size_t>(j)];
+bool ExtraJoints::areAtRest() const noexcept {
+    for (int j = first_; j < first_ + count_; ++j) {
+        const ExtraJoint &joint = joint_[static_cast<std::size_t>(j)];
         if (joint.state != Following::NONE && !joint.planner.isAtRest()) {
             return false;
         }
@@ -93,16 +95,16 @@ bool areAtRest(const ExtraJoints &extra) noexcept {
     return true;
 }
 
-void fill(const ExtraJoints &extra, std::uint32_t homed, Outputs &out) noexcept {
-    for (int j = extra.first; j < extra.first + extra.count; ++j) {
+void ExtraJoints::fill(std::uint32_t homed, Outputs &out) const noexcept {
+    for (int j = first_; j < first_ + count_; ++j) {
         const auto n = static_cast<std::size_t>(j);
-        const ExtraJoint &joint = extra.joint[n];
+        const ExtraJoint &joint = joint_[n];
         if ((homed >> j & 1U) != 0) {
             out.status.joint[n].isInPosition = joint.planner.isAtRest();
             out.joint[n].free_pos_cmd = joint.pin;
         }
     }
-    out.status.num_extra_joints = extra.count;
+    out.status.num_extra_joints = count_;
 }
 
 }  // namespace mw::motion

@@ -13,30 +13,6 @@
 
 namespace mw::motion {
 
-enum class Following : std::uint8_t {
-    NONE,   ///< not homed: jogs and homing move it
-    HELD,   ///< stopped: brakes, then waits until the pin has settled
-    READY,  ///< waits until the pin changes
-    PIN,    ///< follows the pin
-};
-
-struct ExtraJoint {
-    trajectory::FollowPlanner planner;
-    Following state = Following::NONE;
-    double pin = 0;  ///< in the last cycle
-    int still = 0;   ///< cycles since it changed
-    bool isLimitTold = false;
-};
-
-/// The last joints of the machine.
-struct ExtraJoints {
-    int first = 0, count = 0;
-    std::array<ExtraJoint, MAX_JOINTS> joint{};  ///< by the number of the joint
-
-    bool has(int j) const noexcept { return j >= first && j < first + count; }
-    std::uint32_t mask() const noexcept { return ((1U << count) - 1U) << first; }
-};
-
 /// Time without a change after which a pin has settled [s].
 inline constexpr double SETTLED_PIN_S = 0.1;
 
@@ -51,14 +27,52 @@ struct ExtraJointEvents {
     std::uint32_t lost = 0;    ///< bit per joint whose pin is no longer a number
     std::uint32_t beyond = 0;  ///< bit per joint whose pin has just left its range
 };
-/// A cycle of the homed ones; the others are not changed.
-ExtraJointEvents step(ExtraJoints &extra, const ExtraJointInputs &in) noexcept;
+/// The last joints of the machine.
+class ExtraJoints {
+  public:
+    /// Joints from `first` on, `count` of them.
+    void use_joints(int first, int count) noexcept {
+        first_ = first;
+        count_ = count;
+    }
+    int count() const noexcept { return count_; }
+    int first() const noexcept { return first_; }
+    /// Bit per extra joint.
+    std::uint32_t mask() const noexcept { return ((1U << count_) - 1U) << first_; }
 
-/// Switched on: no motion until a pin changes.
-void switch_on(ExtraJoints &extra, const ExtraJointInputs &in) noexcept;
-/// The joints brake. A pin that keeps changing does not move them.
-void hold(ExtraJoints &extra) noexcept;
-bool areAtRest(const ExtraJoints &extra) noexcept;
-void fill(const ExtraJoints &extra, std::uint32_t homed, Outputs &out) noexcept;
+    /// A cycle of the homed ones; the others are not changed.
+    ExtraJointEvents step(const ExtraJointInputs &in) noexcept;
+    /// Switched on: no motion until a pin changes.
+    void switch_on(const ExtraJointInputs &in) noexcept;
+    /// The joints brake. A pin that keeps changing does not move them.
+    void hold() noexcept;
+
+    /// Joint `j` is commanded here: it is homed, so neither jogs nor homing move it.
+    bool isCommanding(int j) const noexcept { return at(j).state != Following::NONE; }
+    /// Commanded position of such a joint.
+    double position(int j) const noexcept { return at(j).planner.position(); }
+    bool areAtRest() const noexcept;
+    void fill(std::uint32_t homed, Outputs &out) const noexcept;
+
+    enum class Following : std::uint8_t {
+        NONE,   ///< not homed: jogs and homing move it
+        HELD,   ///< stopped: brakes, then waits until the pin has settled
+        READY,  ///< waits until the pin changes
+        PIN,    ///< follows the pin
+    };
+    struct ExtraJoint {
+        trajectory::FollowPlanner planner;
+        Following state = Following::NONE;
+        double pin = 0;  ///< in the last cycle
+        int still = 0;   ///< cycles since it changed
+        bool limit_reported = false;
+    };
+
+  private:
+    const ExtraJoint &at(int j) const noexcept { return joint_[static_cast<std::size_t>(j)]; }
+
+    int first_ = 0, count_ = 0;
+    std::array<ExtraJoint, MAX_JOINTS> joint_{};  ///< by the number of the joint
+};
 
 }  // namespace mw::motion

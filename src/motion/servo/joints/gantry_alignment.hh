@@ -15,32 +15,34 @@
 
 namespace mw::motion {
 
-struct GantryAlignment {
-    std::uint32_t joints = 0;  ///< bit per misaligned joint
-    bool isActive = false, isStopping = false;
-    std::array<trajectory::AxisMotion, MAX_JOINTS> planner{};
-
-    bool isMisaligned() const noexcept { return joints != 0; }
-    bool areUnderWay() const noexcept { return isActive && isMisaligned(); }
-};
-
 /// A joint that differs from its position in the pose by more than its [JOINT_n]MIN_FERROR, -1 for none.
-/// Inactive joints are not aligned. `led` has the joint positions of the pose.
-int find_misaligned_joint(const Joints &joints, const PerJoint &led, const Settings &settings) noexcept;
-
-/// Begins to align joints to `led`; nothing to do if all differ by rounding only.
-void begin(GantryAlignment &sides, const Joints &joints, const PerJoint &led,
-           const FoldedLimits &limits) noexcept;
-/// The joints brake and keep the position where they stop.
-void stop(GantryAlignment &sides) noexcept;
-/// The machine is off: no alignment.
-void forget(GantryAlignment &sides) noexcept;
+/// Inactive joints are not aligned. `targets` has the joint positions of the pose.
+int find_misaligned_joint(const Joints &joints, const PerJoint &targets, const Settings &settings) noexcept;
 
 enum class AlignmentStep : bool {
-    GOES_ON,
+    CONTINUES,
     STOPPED,  ///< during alignment: the joint positions of the pose do not agree with the joints
 };
-/// One cycle of the misaligned joints; they are aligned once `isMotionWanted`.
-AlignmentStep step(GantryAlignment &sides, Joints &joints, bool isMotionWanted, double period_s) noexcept;
+/// Moves misaligned joints of a gantry to the positions that the pose has for them, before the pose commands
+/// them.
+class GantryAlignment {
+  public:
+    /// Begins to align joints to `targets`; nothing to do if all differ by rounding only.
+    void begin(const Joints &joints, const PerJoint &targets, const FoldedLimits &limits) noexcept;
+    /// One cycle of the misaligned joints; they are aligned once `isMotionWanted`.
+    AlignmentStep step(Joints &joints, bool isMotionWanted, double period_s) noexcept;
+    /// The joints brake and keep the position where they stop.
+    void stop() noexcept;
+    /// Ends the alignment at once: the machine is off, or each joint moves by itself.
+    void cancel() noexcept;
+
+    bool isMisaligned() const noexcept { return joints_ != 0; }
+    bool isMoving() const noexcept { return active_ && isMisaligned(); }
+
+  private:
+    std::uint32_t joints_ = 0;  ///< bit per misaligned joint
+    bool active_ = false, stopping_ = false;
+    std::array<trajectory::AxisMotion, MAX_JOINTS> planner_{};
+};
 
 }  // namespace mw::motion

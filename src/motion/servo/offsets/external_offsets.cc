@@ -13,10 +13,6 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-bool hasOffset(const ExternalOffsets &offsets, int axis) noexcept {
-    return (offsets.axes >> axis & 1U) != 0;
-}
-
 /// Range that it can reach until it stops.
 JogRange reach_of(const ExternalOffset &offset) noexcept {
     JogRange out{offset.next, offset.next};
@@ -40,51 +36,50 @@ void take_counts(ExternalOffset &offset, const OffsetInput &pins, bool isHonoure
 }
 
 /// `to`, limited by the soft limits; an offset outside them does not move further out.
-double allowed(const ExternalOffset &offset, double to, const JogRange &room) noexcept {
+double allowed(const ExternalOffset &offset, double to, const JogRange &available) noexcept {
     const double rest = offset.planner.rest();
-    return std::clamp(to, std::min(room.low, rest), std::max(room.high, rest));
+    return std::clamp(to, std::min(available.low, rest), std::max(available.high, rest));
 }
 
 JogRange both(const JogRange &a, const JogRange &b) noexcept {
     return {std::max(a.low, b.low), std::min(a.high, b.high)};
 }
 
+}  // namespace
+
 /// Range for this axis within the soft limits of shared joints, besides the program and the other offsets.
-JogRange room_of_joints(const ExternalOffsets &offsets, const OffsetInputs &in, PoseRange others,
-                        int axis) noexcept {
-    JogRange room{-UNBOUNDED, UNBOUNDED};
+JogRange ExternalOffsets::range_in_joints(const OffsetInputs &in, PoseRange others, int axis) const noexcept {
+    JogRange available{-UNBOUNDED, UNBOUNDED};
     others.low[axis] = others.high[axis] = 0;
-    const JointRange taken = offsets.shared.within(others);
-    for (std::uint32_t left = offsets.shared.joints; left != 0; left &= left - 1) {
+    const JointRange taken = shared_.within(others);
+    for (std::uint32_t left = shared_.joints; left != 0; left &= left - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(left));
-        const double k = offsets.shared.slope[j][axis];
+        const double k = shared_.slope[j][axis];
         if (k != 0) {
             const double low = (in.limits.joints.low[j] - in.programmed.joints.low[j] - taken.low[j]) / k;
             const double high = (in.limits.joints.high[j] - in.programmed.joints.high[j] - taken.high[j]) / k;
-            room = both(room, k > 0 ? JogRange{low, high} : JogRange{high, low});
+            available = both(available, k > 0 ? JogRange{low, high} : JogRange{high, low});
         }
     }
-    return room;
+    return available;
 }
 
-}  // namespace
-
-void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
-    offsets.isLimited = false;
-    const bool isShared = offsets.shared.joints != 0;
-    PoseRange all = isShared ? range(offsets) : PoseRange{};
+void ExternalOffsets::step(const OffsetInputs &in) noexcept {
+    limited_ = false;
+    const bool isShared = shared_.joints != 0;
+    PoseRange all = isShared ? range() : PoseRange{};
     for (int i = 0; i < MAX_AXES; ++i) {
-        if (!hasOffset(offsets, i)) {
+        if (!hasOffset(i)) {
             continue;
         }
-        ExternalOffset &offset = offsets.axis[at(i)];
-        if ((offsets.added >> i & 1U) != 0) [[unlikely]] {
+        ExternalOffset &offset = axis_[at(i)];
+        if ((added_ >> i & 1U) != 0) [[unlikely]] {
             offset.counts = in.pins[at(i)].counts;
         }
         take_counts(offset, in.pins[at(i)], in.isHonoured);
-        JogRange room{in.limits.low[i] - in.programmed.axes.low[i],
-                      in.limits.high[i] - in.programmed.axes.high[i]};
-        room = isShared ? both(room, room_of_joints(offsets, in, all, i)) : room;
+        JogRange available{in.limits.low[i] - in.programmed.axes.low[i],
+                           in.limits.high[i] - in.programmed.axes.high[i]};
+        available = isShared ? both(available, range_in_joints(in, all, i)) : available;
         trajectory::AxisMotion &p = offset.planner;
         if (in.isHonoured) {
             const JogLimits &most = in.limits.offset[at(i)];
@@ -93,8 +88,8 @@ void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
                 p.max_acceleration = most.acceleration;
                 p.max_jerk = most.jerk;
             }
-            p.target = allowed(offset, offset.next, room);
-            offset.next = allowed(offset, offset.request, room);
+            p.target = allowed(offset, offset.next, available);
+            offset.next = allowed(offset, offset.request, available);
             offset.isLimited = offset.next != offset.request;
         }
         if (isShared) {
@@ -103,103 +98,112 @@ void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept {
             all.high[i] = reach.high;
         }
         p.step(in.period_s);
-        offsets.pose[i] = p.position;
-        offsets.isLimited = offsets.isLimited || offset.isLimited;
+        pose_[i] = p.position;
+        limited_ = limited_ || offset.isLimited;
     }
-    offsets.added = 0;
+    added_ = 0;
 }
 
-void configure(ExternalOffsets &offsets, const FoldedLimits &limits, const AxisMap &map) noexcept {
-    const std::uint32_t had = offsets.axes;
-    offsets.axes = 0;
+const TravelRange &ExternalOffsets::extend_travelled(const geometry::Pose &pose, bool isNew) noexcept {
+    const TravelRange here{{pose, pose}, shared_.at(pose)};
+    if (isNew) {
+        travelled_ = here;
+    }
+    travelled_.include(here);
+    return travelled_;
+}
+
+void ExternalOffsets::configure(const FoldedLimits &limits, const AxisMap &map) noexcept {
+    const std::uint32_t had = axes_;
+    axes_ = 0;
     for (int i = 0; i < MAX_AXES; ++i) {
         // An existing offset stays, also if no offset is possible any more.
-        const bool isThere = offsets.pose[i] != 0.0 || !offsets.axis[at(i)].planner.isAtRest();
-        offsets.axes |= limits.offset[at(i)].velocity > 0 || isThere ? 1U << i : 0U;
+        const bool isThere = pose_[i] != 0.0 || !axis_[at(i)].planner.isAtRest();
+        axes_ |= limits.offset[at(i)].velocity > 0 || isThere ? 1U << i : 0U;
     }
-    offsets.added = (offsets.added | ~had) & offsets.axes;
-    offsets.shared = shared_joints(map.linear, offsets.axes);
-    offsets.isLimited = offsets.isLimited && offsets.axes != 0;
+    added_ = (added_ | ~had) & axes_;
+    shared_ = shared_joints(map.linear, axes_);
+    limited_ = limited_ && axes_ != 0;
     if (!limits.homed.areAll) {
-        for (ExternalOffset &offset : offsets.axis) {
+        for (ExternalOffset &offset : axis_) {
             const std::int32_t counts = offset.counts;
             offset = {};
             offset.counts = counts;
         }
-        offsets.pose = {};
-        offsets.isLimited = false;
+        pose_ = {};
+        limited_ = false;
     }
 }
 
-void start_at_zero(ExternalOffsets &offsets, const Inputs &in) noexcept {
+void ExternalOffsets::start_at_zero(const Inputs &in) noexcept {
     for (int i = 0; i < MAX_AXES; ++i) {
-        offsets.axis[at(i)] = {};
-        offsets.axis[at(i)].counts = in.axis_offset[at(i)].counts;
+        axis_[at(i)] = {};
+        axis_[at(i)].counts = in.axis_offset[at(i)].counts;
     }
-    offsets.added = 0;
-    offsets.pose = {};
-    offsets.isLimited = false;
+    added_ = 0;
+    pose_ = {};
+    limited_ = false;
 }
 
-void stop(ExternalOffsets &offsets) noexcept {
-    for (ExternalOffset &offset : offsets.axis) {
+void ExternalOffsets::stop() noexcept {
+    for (ExternalOffset &offset : axis_) {
         offset.planner.stop();
         offset.next = offset.planner.target;
     }
 }
 
-void stop_at_once(ExternalOffsets &offsets) noexcept {
-    for (ExternalOffset &offset : offsets.axis) {
+void ExternalOffsets::stop_at_once() noexcept {
+    for (ExternalOffset &offset : axis_) {
         offset.planner.reset(offset.planner.position);
         offset.next = offset.planner.position;
     }
 }
 
-bool areAtRest(const ExternalOffsets &offsets) noexcept {
-    return std::all_of(offsets.axis.begin(), offsets.axis.end(),
+bool ExternalOffsets::isAtRest() const noexcept {
+    return std::all_of(axis_.begin(), axis_.end(),
                        [](const ExternalOffset &offset) { return offset.planner.isAtRest(); });
 }
 
-bool areAsked(const ExternalOffsets &offsets, const std::array<OffsetInput, MAX_AXES> &pins) noexcept {
+bool ExternalOffsets::isMotionRequested(const std::array<OffsetInput, MAX_AXES> &pins) const noexcept {
     std::uint32_t asked = 0;
     for (std::size_t i = 0; i < pins.size(); ++i) {
-        const ExternalOffset &offset = offsets.axis[i];
+        const ExternalOffset &offset = axis_[i];
         const bool isAsked = pins[i].isEnabled && pins[i].counts != offset.counts;
         asked |= isAsked || offset.request != offset.planner.position ? 1U << i : 0U;
     }
-    return (asked & offsets.axes & ~offsets.added) != 0;
+    return (asked & axes_ & ~added_) != 0;
 }
 
-PoseRange range(const ExternalOffsets &offsets) noexcept {
+PoseRange ExternalOffsets::range() const noexcept {
     PoseRange out;
     for (int i = 0; i < MAX_AXES; ++i) {
-        const JogRange reach = reach_of(offsets.axis[at(i)]);
+        const JogRange reach = reach_of(axis_[at(i)]);
         out.low[i] = reach.low;
         out.high[i] = reach.high;
     }
     return out;
 }
 
-geometry::Pose without(const ExternalOffsets &offsets, const geometry::Pose &pose) noexcept {
-    if (offsets.axes != 0) [[unlikely]] {
-        return pose - offsets.pose;
+geometry::Pose ExternalOffsets::remove_from(const geometry::Pose &pose) const noexcept {
+    if (axes_ != 0) [[unlikely]] {
+        return pose - pose_;
     }
     return pose;
 }
 
-void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept {
-    if (hasOffset(offsets, axis)) {
-        const JogRange reach = reach_of(offsets.axis[at(axis)]);
+void ExternalOffsets::narrow(JogRange &jog, int axis) const noexcept {
+    if (hasOffset(axis)) {
+        const JogRange reach = reach_of(axis_[at(axis)]);
         jog.low -= reach.low;
         jog.high -= reach.high;
     }
 }
 
-void take_off(const ExternalOffsets &offsets, std::array<double, MAX_JOINTS> &joints,
-              trajectory::JointLimits &limits) noexcept {
-    const JointRange here = offsets.shared.at(offsets.pose);
-    const JointRange reach = offsets.shared.within(range(offsets));
-    for (std::uint32_t left = offsets.shared.joints; left != 0; left &= left - 1) {
+void ExternalOffsets::remove_from(std::array<double, MAX_JOINTS> &joints,
+                                  trajectory::JointLimits &limits) const noexcept {
+    const JointRange here = shared_.at(pose_);
+    const JointRange reach = shared_.within(range());
+    for (std::uint32_t left = shared_.joints; left != 0; left &= left - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(left));
         joints[j] -= here.low[j];
         limits.low[j] -= reach.low[j];
@@ -207,17 +211,17 @@ void take_off(const ExternalOffsets &offsets, std::array<double, MAX_JOINTS> &jo
     }
 }
 
-void fill(const ExternalOffsets &offsets, Outputs &out) noexcept {
-    out.areOffsetsQuiet = offsets.axes == 0;
+void ExternalOffsets::fill(Outputs &out) const noexcept {
+    out.areOffsetsQuiet = axes_ == 0;
     out.touched |= part_range(status_part::AXES, 1);
     out.isOffsetActive = false;
-    out.isOffsetLimited = offsets.isLimited;
+    out.isOffsetLimited = limited_;
     for (std::uint32_t left = out.axes; left != 0; left &= left - 1) {
         const int i = std::countr_zero(left);
-        out.status.axis[at(i)].external_offset = offsets.pose[i];
-        out.axis[at(i)].offset = offsets.pose[i];
-        out.axis[at(i)].offset_request = offsets.axis[at(i)].request;
-        out.isOffsetActive = out.isOffsetActive || offsets.pose[i] != 0.0;
+        out.status.axis[at(i)].external_offset = pose_[i];
+        out.axis[at(i)].offset = pose_[i];
+        out.axis[at(i)].offset_request = axis_[at(i)].request;
+        out.isOffsetActive = out.isOffsetActive || pose_[i] != 0.0;
     }
 }
 

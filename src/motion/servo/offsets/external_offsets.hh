@@ -23,17 +23,6 @@ struct ExternalOffset {
     bool isLimited = false;  ///< by a soft limit
 };
 
-struct ExternalOffsets {
-    std::uint32_t axes = 0;  ///< bit per axis that may have one
-    std::uint32_t added =
-        0;  ///< of them, since the last cycle: what pins were turned before counts for nothing
-    std::array<ExternalOffset, MAX_AXES> axis{};
-    SharedJoints shared;    ///< that these axes move
-    geometry::Pose pose;    ///< current
-    TravelRange travelled;  ///< by the path in reverse run
-    bool isLimited = false;
-};
-
 struct OffsetInputs {
     const std::array<OffsetInput, MAX_AXES> &pins;
     const FoldedLimits &limits;
@@ -41,31 +30,58 @@ struct OffsetInputs {
     bool isHonoured = false;  ///< on, all joints homed, in a mode of axes, and not stopping
     double period_s = 1e-3;
 };
-/// One cycle.
-void step(ExternalOffsets &offsets, const OffsetInputs &in) noexcept;
+class ExternalOffsets {
+  public:
+    /// One cycle.
+    void step(const OffsetInputs &in) noexcept;
+    /// Range of the path that is driven or recorded for reverse run, with `pose` in it. `isNew`: nothing is
+    /// recorded.
+    const TravelRange &extend_travelled(const geometry::Pose &pose, bool isNew) noexcept;
 
-/// The limits have changed; all offsets end if a joint is not homed any more.
-void configure(ExternalOffsets &offsets, const FoldedLimits &limits, const AxisMap &map) noexcept;
-/// Offsets are zero from here, and the counts start here; nothing moves.
-void start_at_zero(ExternalOffsets &offsets, const Inputs &in) noexcept;
-/// All of them brake, from this cycle on.
-void stop(ExternalOffsets &offsets) noexcept;
-void stop_at_once(ExternalOffsets &offsets) noexcept;
-bool areAtRest(const ExternalOffsets &offsets) noexcept;
+    /// The limits have changed; all offsets end if a joint is not homed any more.
+    void configure(const FoldedLimits &limits, const AxisMap &map) noexcept;
+    /// Offsets are zero from here, and the counts start here; nothing moves.
+    void start_at_zero(const Inputs &in) noexcept;
+    /// All of them brake, from this cycle on.
+    void stop() noexcept;
+    void stop_at_once() noexcept;
 
-/// True when new counts, or the distance to the request, require a motion.
-bool areAsked(const ExternalOffsets &offsets, const std::array<OffsetInput, MAX_AXES> &pins) noexcept;
+    /// Bit per axis that may have one.
+    std::uint32_t axes() const noexcept { return axes_; }
+    bool isEmpty() const noexcept { return axes_ == 0; }
+    /// Joints that these axes move.
+    const SharedJoints &shared() const noexcept { return shared_; }
+    /// Current.
+    const geometry::Pose &pose() const noexcept { return pose_; }
+    /// By a soft limit.
+    bool isLimited() const noexcept { return limited_; }
+    bool isAtRest() const noexcept;
+    /// True when new counts, or the distance to the request, require a motion.
+    bool isMotionRequested(const std::array<OffsetInput, MAX_AXES> &pins) const noexcept;
 
-/// Their range from here on.
-PoseRange range(const ExternalOffsets &offsets) noexcept;
-/// The programmed or jogged part of a commanded or measured pose.
-geometry::Pose without(const ExternalOffsets &offsets, const geometry::Pose &pose) noexcept;
-/// Reduces the range of a jog by the offset.
-void narrow(JogRange &jog, const ExternalOffsets &offsets, int axis) noexcept;
-/// Commanded joint positions and soft limits without the offsets.
-void take_off(const ExternalOffsets &offsets, std::array<double, MAX_JOINTS> &joints,
-              trajectory::JointLimits &limits) noexcept;
+    /// Their range from here on.
+    PoseRange range() const noexcept;
+    /// `pose` without the offsets: its programmed or jogged part.
+    geometry::Pose remove_from(const geometry::Pose &pose) const noexcept;
+    /// Reduces the range of a jog by the offset.
+    void narrow(JogRange &jog, int axis) const noexcept;
+    /// Commanded joint positions and soft limits without the offsets.
+    void remove_from(std::array<double, MAX_JOINTS> &joints, trajectory::JointLimits &limits) const noexcept;
 
-void fill(const ExternalOffsets &offsets, Outputs &out) noexcept;
+    void fill(Outputs &out) const noexcept;
+
+  private:
+    bool hasOffset(int axis) const noexcept { return (axes_ >> axis & 1U) != 0; }
+    JogRange range_in_joints(const OffsetInputs &in, PoseRange others, int axis) const noexcept;
+
+    std::uint32_t axes_ = 0;
+    /// Axes among them since the last cycle: what pins were turned before has no effect.
+    std::uint32_t added_ = 0;
+    std::array<ExternalOffset, MAX_AXES> axis_{};
+    SharedJoints shared_;
+    geometry::Pose pose_;
+    TravelRange travelled_;  ///< by the path in reverse run
+    bool limited_ = false;
+};
 
 }  // namespace mw::motion

@@ -23,20 +23,20 @@ geometry::Pose at(double x) {
     return p;
 }
 
-TEST(PlacePart, JointsLeadOrThePoseDoes) {
+TEST(CartesianPositionPart, JointsLeadOrThePoseDoes) {
     kinematics::Trivial kinematics;
     ASSERT_TRUE(kinematics.configure("XY"));
-    CartesianPosition place;
+    CartesianPosition position;
     const double joints[MAX_JOINTS] = {3, 4};
-    follow_joints(place, kinematics, joints, false);
-    EXPECT_EQ(place.cmd[0], 3);
-    EXPECT_EQ(place.velocity, 0);
-    follow_pose(place, at(3.1), T);
-    EXPECT_NEAR(place.velocity, std::hypot(0.1, 4) / T, 1e-6);
+    position.follow_joints(kinematics, joints, false);
+    EXPECT_EQ(position.cmd()[0], 3);
+    EXPECT_EQ(position.velocity(), 0);
+    position.follow_pose(at(3.1), T);
+    EXPECT_NEAR(position.velocity(), std::hypot(0.1, 4) / T, 1e-6);
     const double feedback[MAX_JOINTS] = {2.9, 4};
-    read_feedback(place, kinematics, feedback, false);
-    EXPECT_TRUE(place.isFbValid) << "joints that are axes need no homing";
-    EXPECT_EQ(place.fb[0], 2.9);
+    position.read_feedback(kinematics, feedback, false);
+    EXPECT_TRUE(position.isFbValid()) << "joints that are axes need no homing";
+    EXPECT_EQ(position.fb()[0], 2.9);
 }
 
 /// Models that iterate come back to a place within 1e-4: no step, however slow the joints are.
@@ -58,22 +58,22 @@ TEST(LeadPart, APoseLeadsToWhereTheJointsStandWithinACycleOfThem) {
     }
 }
 
-TEST(PlacePart, WhereNobodyKnowsThePoseTheLastOneStandsAndIsNotValid) {
+TEST(CartesianPositionPart, WhereNobodyKnowsThePoseTheLastOneStandsAndIsNotValid) {
     const kinematics::CoreXy kinematics;
-    CartesianPosition place;
-    place.fb = at(5);
-    place.cmd = at(7);
+    CartesianPosition position;
+    position.assume(0, 5);
+    position.set_cmd(at(7));
     const double joints[MAX_JOINTS] = {3, 1};
-    read_feedback(place, kinematics, joints, false);
-    EXPECT_EQ(place.fb[0], 5) << "not homed";
-    EXPECT_FALSE(place.isFbValid);
-    read_feedback(place, kinematics, joints, true);
-    EXPECT_NEAR(place.fb[0], 2, 1e-12);
-    EXPECT_TRUE(place.isFbValid);
-    follow_joints(place, kinematics, joints, false);
-    EXPECT_EQ(place.cmd[0], 7);
-    follow_joints(place, kinematics, joints, true);
-    EXPECT_NEAR(place.cmd[0], 2, 1e-12);
+    position.read_feedback(kinematics, joints, false);
+    EXPECT_EQ(position.fb()[0], 5) << "not homed";
+    EXPECT_FALSE(position.isFbValid());
+    position.read_feedback(kinematics, joints, true);
+    EXPECT_NEAR(position.fb()[0], 2, 1e-12);
+    EXPECT_TRUE(position.isFbValid());
+    position.follow_joints(kinematics, joints, false);
+    EXPECT_EQ(position.cmd()[0], 7);
+    position.follow_joints(kinematics, joints, true);
+    EXPECT_NEAR(position.cmd()[0], 2, 1e-12);
 }
 
 /// A straight path at 20 unit/s that has just stopped.
@@ -86,7 +86,7 @@ struct RetracingPart : testing::Test {
         limits.path.acceleration.fill(1000);
         for (int n = 0; n < 600; ++n) {
             x += n < 500 ? 0.02 * std::min(1.0, std::min(n / 100.0, (500 - n) / 100.0)) : 0.0;
-            record(*retracing, at(x), {limits, 0, T});
+            retracing->record(at(x), {limits, 0, T});
         }
     }
     struct Way {
@@ -101,7 +101,7 @@ struct RetracingPart : testing::Test {
         in.rate = 0.5;
         in.drops = drops;
         Way way{at(x)};
-        way.isNewStart = step(on, way.pose, in, {limits, 0, T});
+        way.isNewStart = on.step(way.pose, in, {limits, 0, T});
         return way;
     }
 };
@@ -120,7 +120,7 @@ TEST_F(RetracingPart, GoesBackAndForthOnThePathThatWasDriven) {
         last = now;
     }
     EXPECT_EQ(last, x);
-    EXPECT_FALSE(retracing->retrace.isAway());
+    EXPECT_FALSE(retracing->isAway());
 }
 
 TEST_F(RetracingPart, APathThatIsDroppedOnTheWayBackEndsWhereItComesToAStand) {
@@ -133,8 +133,8 @@ TEST_F(RetracingPart, APathThatIsDroppedOnTheWayBackEndsWhereItComesToAStand) {
     }
     EXPECT_TRUE(out.isNewStart);
     EXPECT_LT(out.pose[0], x);
-    EXPECT_FALSE(retracing->isPathLeft);
-    EXPECT_TRUE(retracing->retrace.isEmpty());
+    EXPECT_FALSE(retracing->isPathLeft());
+    EXPECT_TRUE(retracing->isEmpty());
 }
 
 TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort) {
@@ -143,7 +143,7 @@ TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort) {
     limits.path.acceleration.fill(A);
     for (int n = 0; n < 3000; ++n) {
         x += n < 1000 ? 0.02 : n < 2990 ? 0.005 : 0;
-        record(*retracing, at(x), {limits, 0, T});
+        retracing->record(at(x), {limits, 0, T});
     }
     const auto cycles_to_stop = [&](int back) {
         const auto on = std::make_unique<Retracing>(*retracing);
@@ -154,14 +154,14 @@ TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort) {
         double last = x;
         for (int n = 0; n < back; ++n) {
             last = pose[0];
-            step(*on, pose, in, {limits, 0, T});
+            on->step(pose, in, {limits, 0, T});
         }
         const double v = (last - pose[0]) / T;
         in.isStopping = true;
         int n = 0;
         for (double before = pose[0] + 1; pose[0] != before && n < 3000; ++n) {
             before = pose[0];
-            step(*on, pose, in, {limits, 0, T});
+            on->step(pose, in, {limits, 0, T});
         }
         return std::pair{n, v};
     };

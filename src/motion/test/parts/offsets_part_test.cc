@@ -20,14 +20,14 @@ struct OffsetsPart : ::testing::Test {
         limits.offset[0] = {10, 100, 0};
         limits.low[0] = -20;
         limits.high[0] = 20;
-        configure(offsets, limits, axis_map("X", 1));
-        start_at_zero(offsets, in);
+        offsets.configure(limits, axis_map("X", 1));
+        offsets.start_at_zero(in);
         in.axis_offset[0].isEnabled = true;
         in.axis_offset[0].scale = 0.1;
     }
     void go(int cycles, bool isHonoured = true) {
         for (int n = 0; n < cycles; ++n) {
-            step(offsets, {in.axis_offset, limits, programmed, isHonoured, 1e-3});
+            offsets.step({in.axis_offset, limits, programmed, isHonoured, 1e-3});
         }
     }
 };
@@ -35,18 +35,18 @@ struct OffsetsPart : ::testing::Test {
 TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain) {
     in.axis_offset[0].counts = 150;
     go(1);
-    EXPECT_EQ(offsets.pose[0], 0);
-    EXPECT_EQ(range(offsets).high[0], 15) << "the path planner is informed first";
+    EXPECT_EQ(offsets.pose()[0], 0);
+    EXPECT_EQ(offsets.range().high[0], 15) << "the path planner is informed first";
     programmed.axes.high[0] = 18;  // a move was taken before that was read
     go(1);
-    EXPECT_NEAR(range(offsets).high[0], 2, 1e-9) << "not for one cycle towards 15";
+    EXPECT_NEAR(offsets.range().high[0], 2, 1e-9) << "not for one cycle towards 15";
     go(3000);
-    EXPECT_NEAR(offsets.pose[0], 2, 1e-9);
-    EXPECT_TRUE(offsets.isLimited);
+    EXPECT_NEAR(offsets.pose()[0], 2, 1e-9);
+    EXPECT_TRUE(offsets.isLimited());
     programmed.axes.high[0] = 5;
     go(3000);
-    EXPECT_NEAR(offsets.pose[0], 15, 1e-9);
-    EXPECT_FALSE(offsets.isLimited);
+    EXPECT_NEAR(offsets.pose()[0], 15, 1e-9);
+    EXPECT_FALSE(offsets.isLimited());
 }
 
 /// A change of the kinematics or of a ratio is no turn of a wheel.
@@ -59,20 +59,20 @@ TEST_F(OffsetsPart, WhatWasTurnedBeforeAnAxisCouldHaveOneMovesNothing) {
         limits.offset[1] = {10, 100, 0};
         limits.low[1] = -20;
         limits.high[1] = 20;
-        configure(offsets, limits, axis_map("XY", 2));
-        EXPECT_FALSE(areAsked(offsets, in.axis_offset));
+        offsets.configure(limits, axis_map("XY", 2));
+        EXPECT_FALSE(offsets.isMotionRequested(in.axis_offset));
         go(100);
-        EXPECT_EQ(offsets.pose[1], 0);
+        EXPECT_EQ(offsets.pose()[1], 0);
         in.axis_offset[1].isEnabled = true;
         in.axis_offset[1].counts += 20;
-        EXPECT_TRUE(areAsked(offsets, in.axis_offset));
+        EXPECT_TRUE(offsets.isMotionRequested(in.axis_offset));
         go(3000);
-        EXPECT_NEAR(offsets.pose[1], 2, 1e-9);
+        EXPECT_NEAR(offsets.pose()[1], 2, 1e-9);
         in.axis_offset[1].isClearing = true;
         go(3000);
         in.axis_offset[1].isClearing = false;
         limits.offset[1] = {};
-        configure(offsets, limits, axis_map("XY", 2));
+        offsets.configure(limits, axis_map("XY", 2));
     }
 }
 
@@ -81,25 +81,25 @@ TEST_F(OffsetsPart, NoMoveThatComesLaterMakesItGoBack) {
     go(3000);
     programmed.axes.high[0] = 15;
     go(3000);
-    EXPECT_NEAR(offsets.pose[0], 10, 1e-9);
+    EXPECT_NEAR(offsets.pose()[0], 10, 1e-9);
 }
 
 TEST_F(OffsetsPart, CountsWrapAndWhatIsNoNumberCountsForNothing) {
     in.axis_offset[0].counts = std::numeric_limits<std::int32_t>::max();
-    start_at_zero(offsets, in);
+    offsets.start_at_zero(in);
     in.axis_offset[0].counts = std::numeric_limits<std::int32_t>::min() + 9;
     go(2000);
-    EXPECT_NEAR(offsets.pose[0], 1, 1e-9);
+    EXPECT_NEAR(offsets.pose()[0], 1, 1e-9);
     in.axis_offset[0].scale = std::numeric_limits<double>::quiet_NaN();
     in.axis_offset[0].counts += 5;
     go(100);
-    EXPECT_NEAR(offsets.pose[0], 1, 1e-9);
+    EXPECT_NEAR(offsets.pose()[0], 1, 1e-9);
     in.axis_offset[0].scale = 0.1;
     go(100, false);
     in.axis_offset[0].counts += 50;
     go(100, false);
     go(2000);
-    EXPECT_NEAR(offsets.pose[0], 1, 1e-9) << "what is turned while they are not honoured is lost";
+    EXPECT_NEAR(offsets.pose()[0], 1, 1e-9) << "what is turned while they are not honoured is lost";
 }
 
 /// X and Y of belts: what one takes of a joint's travel is not there for the other, nor for what is
@@ -115,28 +115,28 @@ TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom) {
         offsets = {};
         programmed = {};
         in.axis_offset[0].counts = 0;
-        configure(offsets, limits, axis_map(corexy, 3));
+        offsets.configure(limits, axis_map(corexy, 3));
         in.axis_offset[1] = in.axis_offset[0];
-        start_at_zero(offsets, in);
+        offsets.start_at_zero(in);
         // A move leads there, another back from it.
         (side > 0 ? programmed.joints.high : programmed.joints.low)[0] = 20 * side;
         in.axis_offset[0].counts = 80 * side;
         in.axis_offset[1].counts = 80 * side;
         for (int n = 0; n < 3000; ++n) {
             go(1);
-            const JointRange taken = offsets.shared.within(range(offsets));
+            const JointRange taken = offsets.shared().within(offsets.range());
             for (const std::size_t j : {0U, 1U}) {
                 ASSERT_LE(programmed.joints.high[j] + taken.high[j], 30 + 1e-9);
                 ASSERT_GE(programmed.joints.low[j] + taken.low[j], -30 - 1e-9);
             }
         }
-        EXPECT_NEAR(offsets.pose[0] + offsets.pose[1], 10 * side, 1e-9) << "all there is";
-        EXPECT_TRUE(offsets.isLimited);
+        EXPECT_NEAR(offsets.pose()[0] + offsets.pose()[1], 10 * side, 1e-9) << "all there is";
+        EXPECT_TRUE(offsets.isLimited());
         in.axis_offset[1].counts = -80 * side;  // Y leads back, and X has its room
         go(4000);
-        EXPECT_NEAR(offsets.pose[0], 8 * side, 1e-9);
-        EXPECT_NEAR(offsets.pose[1], -8 * side, 1e-9);
-        EXPECT_FALSE(offsets.isLimited);
+        EXPECT_NEAR(offsets.pose()[0], 8 * side, 1e-9);
+        EXPECT_NEAR(offsets.pose()[1], -8 * side, 1e-9);
+        EXPECT_FALSE(offsets.isLimited());
     }
 }
 
@@ -144,14 +144,14 @@ TEST_F(OffsetsPart, WhatTheyHaveOfAJointIsTakenOffForJogs) {
     const kinematics::CoreXy corexy;
     limits.joints.low.fill(-30);
     limits.joints.high.fill(30);
-    configure(offsets, limits, axis_map(corexy, 3));
-    start_at_zero(offsets, in);
+    offsets.configure(limits, axis_map(corexy, 3));
+    offsets.start_at_zero(in);
     in.axis_offset[0].counts = 80;
     go(3000);
     std::array<double, MAX_JOINTS> joints{};
     joints.fill(10);
     trajectory::JointLimits left = limits.joints;
-    take_off(offsets, joints, left);
+    offsets.remove_from(joints, left);
     EXPECT_NEAR(joints[0], 2, 1e-9);
     EXPECT_NEAR(left.high[0], 22, 1e-9);
     EXPECT_NEAR(left.low[1], -38, 1e-9);
