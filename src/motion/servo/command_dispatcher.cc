@@ -62,18 +62,18 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
         },
         [&](const SetScale &c) {
             const double max_feed_scale = parts.model.settings().get(Parameter::MAX_FEED_SCALE);
-            return c.what == Scale::SPINDLE ? take(parts.spindles, c) : parts.holds.take(c, max_feed_scale);
+            return c.what == Scale::SPINDLE ? parts.spindles.take(c) : parts.holds.take(c, max_feed_scale);
         },
         [&](const SetSwitch &c) {
-            return c.what == Switch::SPINDLE_OVERRIDE ? take(parts.spindles, c) : parts.holds.take(c);
+            return c.what == Switch::SPINDLE_OVERRIDE ? parts.spindles.take(c) : parts.holds.take(c);
         },
         [&](const OneOf<JogContinuous, JogIncremental, JogAbsolute> auto &c) {
             return take(parts.jogs, c, jog_situation(parts, in, c.target));
         },
         [&](const OneOf<JogStop, OverrideLimits> auto &c) { return take(parts.jogs, c); },
         [&](const SetTeleopVector &c) { return take(parts, c, in); },
-        [&](const OneOf<SpindleOn, SpindleOrient> auto &c) { return take(parts.spindles, c, isEnabled); },
-        [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return take(parts.spindles, c); },
+        [&](const OneOf<SpindleOn, SpindleOrient> auto &c) { return parts.spindles.take(c, isEnabled); },
+        [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return parts.spindles.take(c); },
         [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return parts.outputs.take(c); },
         [](const SetToolOffset &c) { return check(c); },  // it only limits reverse run
         [&](const ClearProbeFlag &c) { return parts.probe.take(c); },

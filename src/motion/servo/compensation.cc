@@ -55,7 +55,7 @@ void command_spindles(ControllerParts &parts, const Inputs &in) noexcept {
         const trajectory::SpindleTrack &track = executor.spindle(n).track;
         cycle.counted[static_cast<std::size_t>(n)] = {track.turns_per_s(), track.step()};
     }
-    for (std::uint32_t failed = step(parts.spindles, in, parts.model.settings(), cycle); failed != 0;
+    for (std::uint32_t failed = parts.spindles.step(in, parts.model.settings(), cycle); failed != 0;
          failed &= failed - 1) {
         const int n = std::countr_zero(failed);
         parts.raise(FaultKind::SPINDLE_FAULT, n, parts.spindles[n].orient_fault);

@@ -44,9 +44,7 @@ void Controller::step(const Inputs &in, Outputs &out) noexcept {
     }
     command_motors(parts_);
     command_spindles(parts_, in);
-    if (parts_.homing.foreign != nullptr) [[unlikely]] {
-        parts_.homing.foreign->write_pins();
-    }
+    parts_.homing.write_pins();
     write_status(parts_, {in, dispatcher_.epoch(), dispatcher_.last_id(), safety_.isTaskLost()}, out);
     parts_.probe.end_cycle(in.isProbeClosed);
 }

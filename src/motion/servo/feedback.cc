@@ -4,13 +4,11 @@
 namespace mw::motion {
 
 std::uint32_t read_feedback(ControllerParts &parts, const Inputs &in) noexcept {
-    if (parts.homing.foreign != nullptr) [[unlikely]] {
-        parts.homing.foreign->read_pins();
-    }
+    parts.homing.read_pins();
     const PerJoint measured = read_feedback(parts.joints, in);
     parts.position.read_feedback(parts.model.kinematics(), measured.data(),
                                  parts.model.limits().homed.areAll);
-    return measure(parts.spindles, in);
+    return parts.spindles.read_feedback(in);
 }
 
 }  // namespace mw::motion

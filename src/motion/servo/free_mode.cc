@@ -29,7 +29,7 @@ void FreeMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
     }
     parts.offsets.step({in.axis_offset, limits, {}, false, period_s});
     const kinematics::Kinematics &kinematics = parts.model.kinematics();
-    const bool isKnown = kinematics.kind() == kinematics::Kind::BOTH && isAllHomed(parts.homing);
+    const bool isKnown = kinematics.kind() == kinematics::Kind::BOTH && parts.homing.isAllHomed();
     parts.position.follow_joints(kinematics, commanded(parts.joints).data(), isKnown);
 }
 

@@ -42,9 +42,9 @@ geometry::Pose home_pose(const Settings &settings) noexcept {
     const bool isMoving = isAnythingMoving(parts) || !parts.extra.areAtRest() || parts.indexers.busy() != 0;
     const HomeConditions conditions{true, parts.power.mode(), in.isHomingInhibited, isMoving,
                                     inactive_joints(parts.joints)};
-    const homing::Failure why = begin_due(parts.homing, conditions);
+    const homing::Failure why = parts.homing.begin_due(conditions);
     if (why != homing::Failure::NONE) {
-        parts.raise(FaultKind::HOMING_FAILED, parts.homing.due, 0, static_cast<std::uint16_t>(why));
+        parts.raise(FaultKind::HOMING_FAILED, parts.homing.due_joint(), 0, static_cast<std::uint16_t>(why));
     }
 }
 
@@ -58,9 +58,7 @@ geometry::Pose home_pose(const Settings &settings) noexcept {
         const auto n = static_cast<std::size_t>(j);
         inputs[j] = homing_input(in.joint[n], parts.joints[j], parts.jogs.joint[n], limits.joint_jog[n]);
     }
-    parts.homing.module().step(inputs, commands);
-    if (parts.homing.foreign != nullptr && !areFinite(parts.homing, commands)) {
-        abort(parts.homing, homing::event::ABORT);
+    if (!parts.homing.step(inputs, commands)) {
         stop(parts.jogs);
         parts.raise(FaultKind::HOMING_FAILED, -1, 0,
                     static_cast<std::uint16_t>(homing::Failure::MODULE_NONSENSE));
@@ -85,13 +83,13 @@ geometry::Pose home_pose(const Settings &settings) noexcept {
 
 void step_homing(ControllerParts &parts, const Inputs &in) noexcept {
     HomingDrive &homing = parts.homing;
-    if (homing.isDue) [[unlikely]] {
+    if (homing.isDue()) [[unlikely]] {
         start_homing(parts, in);
     }
     if (homing.hasWork()) [[unlikely]] {
         command_homing(parts, in);
     }
-    const HomingFailure failure = take_failure(homing);
+    const HomingFailure failure = homing.take_failure();
     if (failure.why != homing::Failure::NONE) [[unlikely]] {
         parts.raise(FaultKind::HOMING_FAILED, failure.joint, 0, static_cast<std::uint16_t>(failure.why));
     }
@@ -100,8 +98,8 @@ void step_homing(ControllerParts &parts, const Inputs &in) noexcept {
     }
     const MachineModel &model = parts.model;
     const bool isOtherMap = parts.offsets.shared().joints != 0 && !model.map().isAsIn(model.kinematics());
-    if (model.limits().homed.joints != homed_mask(homing) || isOtherMap) [[unlikely]] {
-        if (parts.power.mode() == Mode::FREE && isAllHomed(homing)) {
+    if (model.limits().homed.joints != homing.homed_joints() || isOtherMap) [[unlikely]] {
+        if (parts.power.mode() == Mode::FREE && homing.isAllHomed()) {
             // In other modes the pose commands the joints.
             parts.position.find_again(model.kinematics(), commanded(parts.joints).data(),
                                       home_pose(model.settings()));

@@ -6,7 +6,7 @@
 namespace mw::motion {
 
 void step_indexers(ControllerParts &parts, const Inputs &in) noexcept {
-    const homing::Module &homing = parts.homing.module();
+    const HomingDrive &homing = parts.homing;
     IndexerInputs now;
     now.period_s = parts.model.period_s();
     now.unlocked = unlocked_pins(in);

@@ -14,7 +14,7 @@ namespace {
     bool isSwitched = types.switch_to(parts.types.wanted());
     if (!isSwitched) {
         parts.raise(FaultKind::NO_KINEMATICS_TYPE, -1, parts.types.wanted());
-    } else if (isAllHomed(parts.homing)) {
+    } else if (parts.homing.isAllHomed()) {
         const PerJoint joints = commanded(parts.joints);
         const bool isKnown = isAnswered(kinematics.forward(joints.data(), pose)) &&
                              isWithinOneStep(kinematics, pose, joints, parts.model.joint_step_limit());

@@ -14,12 +14,12 @@ namespace {
 void apply(ControllerParts &parts, const SetParameter &command) noexcept {
     const Settings &settings = parts.model.settings();
     if (PARAMETERS[command.parameter].scope == ParameterScope::JOINT) {
-        configure(parts.homing, command.index, settings);
+        parts.homing.configure(command.index, settings);
     }
     const Parameter changed = PARAMETERS[command.parameter].parameter;
     if (changed == Parameter::MAX_FEED_SCALE || changed == Parameter::TRAJ_PLANNER_TYPE) {
         for (int j = 0; j < parts.model.num_joints(); ++j) {
-            note_play(parts.homing, j, settings);
+            parts.homing.set_clearance(j, settings);
         }
     }
     const bool isHomePose = changed == Parameter::AXIS_FIRST_PLACE;
@@ -64,7 +64,7 @@ CommandResult take(ControllerParts &parts, const SetMode &command) noexcept {
     const bool isOffsetMoving = mode == Mode::FREE && !parts.offsets.isAtRest();
     const ModeConditions conditions{
         parts.homing.isUnderWay(), isAnythingMoving(parts) || isOffsetMoving || parts.indexers.busy() != 0,
-        parts.model.kinematics().kind() != kinematics::Kind::IDENTITY, isAllHomed(parts.homing)};
+        parts.model.kinematics().kind() != kinematics::Kind::IDENTITY, parts.homing.isAllHomed()};
     const Reason reason = parts.power.check_mode(mode, conditions);
     if (reason != Reason::NONE || mode == parts.power.mode()) {
         return {reason};
@@ -113,7 +113,7 @@ CommandResult take(ControllerParts &parts, const SetNumJoints &command, const In
         return result_of(needed, Reason::TOO_FEW_JOINTS);
     }
     for (int j = count; j < parts.model.num_joints(); ++j) {
-        parts.homing.module().unhome(j);
+        parts.homing.unhome(j);
     }
     parts.use_joints(count);
     read_feedback(parts.joints, in);
@@ -127,7 +127,7 @@ CommandResult take(ControllerParts &parts, const SetJointActive &command) noexce
         take(parts.joints, command, {isAnythingMoving(parts), parts.homing.isUnderWay(), areAlone});
     if (areAlone) {  // the pose is that of all joints from here, also for the next command
         const kinematics::Kinematics &kinematics = parts.model.kinematics();
-        const bool isKnown = kinematics.kind() == kinematics::Kind::BOTH && isAllHomed(parts.homing);
+        const bool isKnown = kinematics.kind() == kinematics::Kind::BOTH && parts.homing.isAllHomed();
         parts.position.follow_joints(kinematics, commanded(parts.joints).data(), isKnown);
     }
     return result;
@@ -136,7 +136,7 @@ CommandResult take(ControllerParts &parts, const SetJointActive &command) noexce
 CommandResult take(ControllerParts &parts, const Home &command, const Inputs &in) noexcept {
     const HomeConditions conditions{parts.power.isReady(), parts.power.mode(), in.isHomingInhibited, false,
                                     inactive_joints(parts.joints)};
-    const CommandResult result = take(parts.homing, command, conditions);
+    const CommandResult result = parts.homing.take(command, conditions);
     if (result.reason == Reason::NONE) {
         stop(parts.jogs);
     }
@@ -147,7 +147,7 @@ CommandResult take(ControllerParts &parts, const Unhome &command) noexcept {
     HomeConditions conditions{parts.power.isReady(), parts.power.mode(), false, isAnythingMoving(parts)};
     conditions.kept_while_on =
         parts.power.isEnabled() ? parts.extra.mask() & parts.model.limits().homed.joints : 0;
-    const CommandResult result = take(parts.homing, command, conditions, parts.model.settings());
+    const CommandResult result = parts.homing.take(command, conditions, parts.model.settings());
     if (result.reason == Reason::NONE) {
         parts.publish_limits();
         parts.leave_unknown_pose();

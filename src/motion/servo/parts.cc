@@ -9,11 +9,9 @@ namespace mw::motion {
 ControllerParts::ControllerParts(const ControllerConfig &config, const kinematics::Kinematics &kinematics,
                                  Channels &channels_used, PathLink &link_used) noexcept
     : channels(&channels_used), link(&link_used), model(config, kinematics),
+      homing(config.period_s, config.homing), spindles(config.num_spindles),
       outputs(config.num_dio, config.num_aio), executor(link_used.store, config.period_s) {
     joints.loaded = config.num_joints;
-    spindles.count = config.num_spindles;
-    homing.own.set_period(config.period_s);
-    homing.foreign = config.homing;
     use_joints(config.num_joints);
     jogs.axes = model.limits().axes;  // there are never more joints than now
     const kinematics::IdentityMap *identity = kinematics.identity();
@@ -36,14 +34,13 @@ void ControllerParts::use_joints(int count) noexcept {
     model.use_joints(count);
     joints.count = count;
     jogs.num_joints = count;
-    homing.num_joints = count;
     extra.use_joints(count - model.num_extra_joints(), model.num_extra_joints());
-    homing.num_to_home =
+    const int num_to_home =
         identity != nullptr && extra.count() == 0 ? std::min(identity->num_joints, count) : count;
-    homing.module().set_num_joints(homing.num_to_home);
+    homing.use_joints(count, num_to_home);
     const AxisMap &map = model.map();
     for (int j = 0; j < count; ++j) {
-        set_axis(homing, j, map.areJointsAxes() ? map.axis_of_joint[static_cast<std::size_t>(j)] : -1);
+        homing.set_axis(j, map.areJointsAxes() ? map.axis_of_joint[static_cast<std::size_t>(j)] : -1);
     }
     publish_limits();
 }
@@ -76,7 +73,7 @@ void ControllerParts::stop_category_1(FaultKind kind, int index, double value) n
 }
 
 void ControllerParts::brake() noexcept {
-    abort(homing, homing::event::ABORT);
+    homing.abort(homing::event::ABORT);
     executor.drop();
     stop(jogs);
     alignment.stop();
@@ -92,14 +89,14 @@ void ControllerParts::switch_off() noexcept {
     motion::switch_off(joints);
     indexers.switch_off();
     forget_sources(jogs);
-    motion::switch_off(homing, model.settings());
-    motion::switch_off(spindles);
+    homing.switch_off(model.settings());
+    spindles.switch_off();
     publish_limits();
     leave_unknown_pose();
 }
 
 void ControllerParts::leave_unknown_pose() noexcept {
-    const bool isKnown = model.kinematics().kind() == kinematics::Kind::IDENTITY || isAllHomed(homing);
+    const bool isKnown = model.kinematics().kind() == kinematics::Kind::IDENTITY || homing.isAllHomed();
     if (!power.isEnabled() && !isKnown) {
         power.set_mode(Mode::FREE);
     }
@@ -148,7 +145,7 @@ void ControllerParts::publish_joint_start() noexcept {
 }
 
 void ControllerParts::publish_limits() noexcept {
-    model.fold({homed_mask(homing), isAllHomed(homing)});
+    model.fold({homing.homed_joints(), homing.isAllHomed()});
     const FoldedLimits &limits = model.limits();
     offsets.configure(limits, model.map());
     indexers.set_joints(limits.locks);

@@ -15,7 +15,7 @@ void apply_holds(ControllerParts &parts, const Inputs &in) noexcept {
 void follow_spindles(ControllerParts &parts) noexcept {
     for (int n = 0; n < parts.model.num_spindles(); ++n) {
         parts.executor.set_spindle(n, parts.spindles[n].turns);
-        parts.executor.set_brakings(n, brakings_of(parts.spindles, n, parts.model.settings()));
+        parts.executor.set_brakings(n, parts.spindles.brakings(n, parts.model.settings()));
     }
 }
 

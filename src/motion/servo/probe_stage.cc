@@ -27,7 +27,7 @@ void check_probe(ControllerParts &parts, const Inputs &in) noexcept {
     case ProbeEvent::FOUND: executor.drop(); break;
     case ProbeEvent::TOUCHED:
         parts.raise(FaultKind::PROBE_TRIPPED_IN_MOVE, -1, 0, isOnPath ? 0 : 1);
-        abort(parts.homing, homing::event::ABORT);
+        parts.homing.abort(homing::event::ABORT);
         executor.drop();
         stop(parts.jogs);
         parts.coord_error = true;

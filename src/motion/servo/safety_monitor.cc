@@ -8,7 +8,7 @@ namespace {
 
 /// Which checks do not apply to which joints.
 JointCheck joint_check(const ControllerParts &parts, const Inputs &in) noexcept {
-    const homing::Module &homing = parts.homing.module();
+    const HomingDrive &homing = parts.homing;
     JointCheck how;
     how.limits_ignored = parts.jogs.areLimitsOverridden ? ~0U : 0U;
     how.feedback_ignored = parts.extra.mask() & parts.model.limits().homed.joints;
@@ -35,8 +35,8 @@ void check_joints(ControllerParts &parts, const Inputs &in) noexcept {
             parts.stop_category_0(FaultKind::FOLLOWING_ERROR, j, joints[j].ferror);
             break;
         case JointFault::HARD_LIMIT:
-            if (parts.homing.module().isHoming(j)) {
-                abort(parts.homing, homing::event::LIMIT, j);
+            if (parts.homing.isHoming(j)) {
+                parts.homing.abort(homing::event::LIMIT, j);
             }
             parts.stop_category_1(FaultKind::HARD_LIMIT, j, joints[j].isOnPosHardLimit ? 1.0 : -1.0);
             break;
@@ -78,8 +78,8 @@ void SafetyMonitor::step(ControllerParts &parts, const Inputs &in, std::uint32_t
 
 /// The feedback is no longer that of the machine: braking to a position would be wrong, too.
 void SafetyMonitor::check_positions(ControllerParts &parts, std::uint32_t lost_positions) noexcept {
-    if (note_lost_positions(parts.homing, lost_positions)) [[unlikely]] {
-        if (parts.power.isEnabled() || homed_mask(parts.homing) != 0) {
+    if (parts.homing.note_lost_positions(lost_positions)) [[unlikely]] {
+        if (parts.power.isEnabled() || parts.homing.homed_joints() != 0) {
             parts.raise(FaultKind::POSITIONS_LOST, -1);
         }
         parts.switch_off();

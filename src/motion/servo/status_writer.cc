@@ -141,7 +141,7 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
         const auto i = static_cast<std::size_t>(n);
         v.spindle_rps[i] = parts.spindles[n].speed_rps;
         v.spindle_revs[i] = parts.spindles[n].turns;
-        v.spindle_brakings[i] = brakings_of(parts.spindles, n, parts.model.settings());
+        v.spindle_brakings[i] = parts.spindles.brakings(n, parts.model.settings());
         v.encoder_steps[i] = parts.executor.spindle(n).track.step();
         v.spindles_reversible |= isReversible(parts.model.settings(), n) ? 1U << n : 0U;
         v.spindles_ready |= isReady(parts.spindles[n], now.in.spindle[i]) ? 1U << n : 0U;
@@ -195,9 +195,9 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
     }
     parts.extra.fill(parts.model.limits().homed.joints, out);
     out.isHomingQuiet = out.isHomingQuiet && parts.indexers.isEmpty();  // they add to its outputs
-    fill(parts.homing, out);
+    parts.homing.fill(out);
     parts.indexers.fill(out);
-    fill(parts.spindles, in, parts.power.isEnabled(), out);
+    parts.spindles.fill(in, parts.power.isEnabled(), out);
     for (int j = parts.model.num_joints(); j < parts.joints.loaded; ++j) {
         fill_unused(in.joint[static_cast<std::size_t>(j)], j, out);
     }

@@ -11,89 +11,9 @@ namespace {
 
 constexpr int ALL = -1, VOLATILE_ONES = -2;
 
-/// Millwright's homing is called directly: every cycle calls it.
-template <class Function>
-auto with_module(const HomingDrive &drive, const Function &function) noexcept {
-    return drive.foreign != nullptr ? function(*drive.foreign) : function(drive.own);
-}
-
-}  // namespace
-
-std::uint32_t homed_mask(const HomingDrive &drive) noexcept {
-    if (drive.foreign == nullptr) [[likely]] {
-        return drive.own.summary().homed & ((1U << drive.num_joints) - 1U);
-    }
-    std::uint32_t mask = 0;
-    for (int j = 0; j < drive.num_joints; ++j) {
-        mask |= drive.foreign->isHomed(j) ? 1U << j : 0U;
-    }
-    return mask;
-}
-
-bool isAllHomed(const HomingDrive &drive) noexcept {
-    const std::uint32_t all = (1U << drive.num_to_home) - 1U;
-    return drive.num_to_home > 0 && (homed_mask(drive) & all) == all;
-}
-
-CommandResult take(HomingDrive &drive, const Home &command, const HomeConditions &conditions) noexcept {
-    const int j = command.joint;
-    if (j < ALL || j >= drive.num_joints) {
-        return result_of(j, Reason::NO_SUCH_JOINT);
-    }
-    if (!conditions.isReady) {
-        return result_of(j, Reason::NOT_ENABLED);
-    }
-    if (conditions.mode != Mode::FREE) {
-        return result_of(j, Reason::WRONG_MODE);
-    }
-    if (drive.isUnderWay()) {
-        return result_of(j, Reason::HOMING);
-    }
-    if (conditions.isInhibited) {
-        return result_of(j, Reason::HOMING_INHIBITED);
-    }
-    if (j >= 0 && (conditions.inactive >> j & 1U) != 0) {
-        return result_of(j, Reason::JOINT_INACTIVE);
-    }
-    drive.isDue = true;
-    drive.due = j;
-    return result_of(j, Reason::NONE);
-}
-
-CommandResult take(HomingDrive &drive, const Unhome &command, const HomeConditions &conditions,
-                   const Settings &settings) noexcept {
-    const int j = command.joint;
-    if (j < VOLATILE_ONES || j >= drive.num_joints) {
-        return result_of(j, Reason::NO_SUCH_JOINT);
-    }
-    if (drive.isUnderWay()) {
-        return result_of(j, Reason::HOMING);
-    }
-    if (conditions.isMoving) {
-        return result_of(j, Reason::MOVING);
-    }
-    if (conditions.isReady && conditions.mode != Mode::FREE) {
-        return result_of(j, Reason::WRONG_MODE);  // the pose depends on the homes
-    }
-    std::uint32_t meant = 0;
-    for (int k = 0; k < drive.num_joints; ++k) {
-        const bool isVolatile = j == VOLATILE_ONES && settings.isSet(Parameter::JOINT_VOLATILE_HOME, k);
-        meant |= j == ALL || j == k || isVolatile ? 1U << k : 0U;
-    }
-    if (const std::uint32_t kept = meant & conditions.kept_while_on; kept != 0) {
-        return result_of(std::countr_zero(kept), Reason::SWITCHED_ON);
-    }
-    for (; meant != 0; meant &= meant - 1) {
-        drive.module().unhome(std::countr_zero(meant));
-    }
-    return result_of(j, Reason::NONE);
-}
-
-namespace {
-
 /// Travel at the latch velocity in which backlash is compensated, with the half of the joint's limits that
 /// corrections have. The slow move may begin at this distance from the switch.
-double way_of_play(const Settings &settings, int j) noexcept {
+double clearance_of(const Settings &settings, int j) noexcept {
     const auto get = [&](Parameter p) { return settings.get(p, j); };
     const double play = get(Parameter::JOINT_BACKLASH);
     const double v = 0.5 * get(Parameter::JOINT_MAX_VELOCITY);
@@ -111,13 +31,97 @@ double way_of_play(const Settings &settings, int j) noexcept {
 
 }  // namespace
 
-void note_play(HomingDrive &drive, int j, const Settings &settings) noexcept {
-    drive.own.parameters(j).clearance = way_of_play(settings, j);
+HomingDrive::HomingDrive(double period_s, homing::Module *foreign) noexcept : foreign_(foreign) {
+    own_.set_period(period_s);
 }
 
-void configure(HomingDrive &drive, int j, const Settings &settings) noexcept {
+void HomingDrive::use_joints(int num_joints, int num_to_home) noexcept {
+    num_joints_ = num_joints;
+    num_to_home_ = num_to_home;
+    module().set_num_joints(num_to_home);
+}
+
+std::uint32_t HomingDrive::take_clamped() noexcept {
+    return isForeign() ? foreign_->take_clamped() : own_.take_clamped();
+}
+
+std::uint32_t HomingDrive::homed_joints() const noexcept {
+    if (foreign_ == nullptr) [[likely]] {
+        return own_.summary().homed & ((1U << num_joints_) - 1U);
+    }
+    std::uint32_t mask = 0;
+    for (int j = 0; j < num_joints_; ++j) {
+        mask |= foreign_->isHomed(j) ? 1U << j : 0U;
+    }
+    return mask;
+}
+
+bool HomingDrive::isAllHomed() const noexcept {
+    const std::uint32_t all = (1U << num_to_home_) - 1U;
+    return num_to_home_ > 0 && (homed_joints() & all) == all;
+}
+
+CommandResult HomingDrive::take(const Home &command, const HomeConditions &conditions) noexcept {
+    const int j = command.joint;
+    if (j < ALL || j >= num_joints_) {
+        return result_of(j, Reason::NO_SUCH_JOINT);
+    }
+    if (!conditions.isReady) {
+        return result_of(j, Reason::NOT_ENABLED);
+    }
+    if (conditions.mode != Mode::FREE) {
+        return result_of(j, Reason::WRONG_MODE);
+    }
+    if (isUnderWay()) {
+        return result_of(j, Reason::HOMING);
+    }
+    if (conditions.isInhibited) {
+        return result_of(j, Reason::HOMING_INHIBITED);
+    }
+    if (j >= 0 && (conditions.inactive >> j & 1U) != 0) {
+        return result_of(j, Reason::JOINT_INACTIVE);
+    }
+    due_ = true;
+    due_joint_ = j;
+    return result_of(j, Reason::NONE);
+}
+
+CommandResult HomingDrive::take(const Unhome &command, const HomeConditions &conditions,
+                                const Settings &settings) noexcept {
+    const int j = command.joint;
+    if (j < VOLATILE_ONES || j >= num_joints_) {
+        return result_of(j, Reason::NO_SUCH_JOINT);
+    }
+    if (isUnderWay()) {
+        return result_of(j, Reason::HOMING);
+    }
+    if (conditions.isMoving) {
+        return result_of(j, Reason::MOVING);
+    }
+    if (conditions.isReady && conditions.mode != Mode::FREE) {
+        return result_of(j, Reason::WRONG_MODE);  // the pose depends on the homes
+    }
+    std::uint32_t meant = 0;
+    for (int k = 0; k < num_joints_; ++k) {
+        const bool isVolatile = j == VOLATILE_ONES && settings.isSet(Parameter::JOINT_VOLATILE_HOME, k);
+        meant |= j == ALL || j == k || isVolatile ? 1U << k : 0U;
+    }
+    if (const std::uint32_t kept = meant & conditions.kept_while_on; kept != 0) {
+        return result_of(std::countr_zero(kept), Reason::SWITCHED_ON);
+    }
+    for (; meant != 0; meant &= meant - 1) {
+        module().unhome(std::countr_zero(meant));
+    }
+    return result_of(j, Reason::NONE);
+}
+
+void HomingDrive::set_clearance(int j, const Settings &settings) noexcept {
+    own_.parameters(j).clearance = clearance_of(settings, j);
+}
+
+void HomingDrive::configure(int j, const Settings &settings) noexcept {
     const auto get = [&](Parameter p) { return settings.get(p, j); };
-    homing::Parameters &p = drive.own.parameters(j);
+    homing::Parameters &p = own_.parameters(j);
     p.search_vel = get(Parameter::JOINT_HOME_SEARCH_VEL);
     p.latch_vel = get(Parameter::JOINT_HOME_LATCH_VEL);
     p.final_vel = get(Parameter::JOINT_HOME_FINAL_VEL);
@@ -135,82 +139,83 @@ void configure(HomingDrive &drive, int j, const Settings &settings) noexcept {
     p.low = get(Parameter::JOINT_MIN_LIMIT);
     p.high = get(Parameter::JOINT_MAX_LIMIT);
     p.max_skew = get(Parameter::JOINT_HOME_MAX_SKEW);
-    note_play(drive, j, settings);
+    set_clearance(j, settings);
     p.isLockingIndexer = settings.isSet(Parameter::JOINT_LOCKING_INDEXER, j);
     p.isVolatile = settings.isSet(Parameter::JOINT_VOLATILE_HOME, j);
-    drive.module().configure(j, p);
+    module().configure(j, p);
 }
 
-void set_axis(HomingDrive &drive, int j, int axis) noexcept {
-    drive.own.parameters(j).axis = axis;
+void HomingDrive::set_axis(int j, int axis) noexcept {
+    own_.parameters(j).axis = axis;
 }
 
-void abort(HomingDrive &drive, homing::event::Event why, int joint) noexcept {
-    drive.module().abort(why, joint);
-    drive.isEndAsked = true;
-    drive.isDue = false;
+void HomingDrive::abort(homing::event::Event why, int joint) noexcept {
+    module().abort(why, joint);
+    end_requested_ = true;
+    due_ = false;
 }
 
-void switch_off(HomingDrive &drive, const Settings &settings) noexcept {
-    abort(drive, homing::event::OFF);
-    drive.module().lock();
-    for (int j = 0; j < drive.num_joints; ++j) {
-        if (drive.arePositionsLost || settings.isSet(Parameter::JOINT_VOLATILE_HOME, j)) {
-            drive.module().unhome(j);
+void HomingDrive::switch_off(const Settings &settings) noexcept {
+    abort(homing::event::OFF);
+    module().lock();
+    for (int j = 0; j < num_joints_; ++j) {
+        if (positions_lost_ || settings.isSet(Parameter::JOINT_VOLATILE_HOME, j)) {
+            module().unhome(j);
         }
     }
-    drive.arePositionsLost = false;
+    positions_lost_ = false;
 }
 
-homing::Failure begin_due(HomingDrive &drive, const HomeConditions &conditions) noexcept {
-    if (!drive.isDue || conditions.isMoving) {
+homing::Failure HomingDrive::begin_due(const HomeConditions &conditions) noexcept {
+    if (!due_ || conditions.isMoving) {
         return homing::Failure::NONE;
     }
-    drive.isDue = false;
+    due_ = false;
     if (conditions.isInhibited) {
         return homing::Failure::INHIBITED;
     }
-    for (int j = 0; j < drive.num_joints; ++j) {
-        drive.own.parameters(j).isActive = (conditions.inactive >> j & 1U) == 0;
+    for (int j = 0; j < num_joints_; ++j) {
+        own_.parameters(j).isActive = (conditions.inactive >> j & 1U) == 0;
     }
-    drive.isEndAsked = false;
-    drive.module().start(drive.due);
+    end_requested_ = false;
+    module().start(due_joint_);
     return homing::Failure::NONE;
 }
 
-namespace {
-
 /// A user's module does not report why homing ends: a joint that was being homed and is not homed now has
 /// failed.
-int joint_given_up(HomingDrive &drive) noexcept {
+int HomingDrive::failed_foreign_joint() noexcept {
     std::uint32_t homing = 0;
-    for (int j = 0; j < drive.num_joints; ++j) {
-        homing |= drive.module().isHoming(j) ? 1U << j : 0U;
+    for (int j = 0; j < num_joints_; ++j) {
+        homing |= module().isHoming(j) ? 1U << j : 0U;
     }
-    const std::uint32_t over = drive.known & ~homing & ~homed_mask(drive);
-    drive.known = homing;
-    return over != 0 && !drive.isEndAsked ? std::countr_zero(over) : -1;
+    const std::uint32_t over = homing_joints_ & ~homing & ~homed_joints();
+    homing_joints_ = homing;
+    return over != 0 && !end_requested_ ? std::countr_zero(over) : -1;
 }
 
-}  // namespace
-
-HomingFailure take_failure(HomingDrive &drive) noexcept {
+HomingFailure HomingDrive::take_failure() noexcept {
     HomingFailure out;
-    if (drive.foreign != nullptr) [[unlikely]] {
-        out.joint = joint_given_up(drive);
+    if (foreign_ != nullptr) [[unlikely]] {
+        out.joint = failed_foreign_joint();
         out.why = out.joint >= 0 ? homing::Failure::MODULE_FAILED : homing::Failure::NONE;
         return out;
     }
-    out.joint = drive.own.take_failure(out.why);
+    out.joint = own_.take_failure(out.why);
     return out.why == homing::Failure::ABORTED ? HomingFailure() : out;
 }
 
-bool areFinite(const HomingDrive &drive, const homing::JointCommand *commands) noexcept {
-    for (int j = 0; j < drive.num_joints; ++j) {
+bool HomingDrive::step(const homing::JointInput *inputs, homing::JointCommand *commands) noexcept {
+    module().step(inputs, commands);
+    if (foreign_ == nullptr) {
+        return true;
+    }
+    for (int j = 0; j < num_joints_; ++j) {
         const homing::JointCommand &c = commands[j];
         for (const double x :
              {c.value, c.velocity, c.most_velocity, c.acceleration, c.jerk, c.shift, c.zero}) {
             if (!std::isfinite(x)) {
+                abort(homing::event::ABORT);
                 return false;
             }
         }
@@ -218,22 +223,21 @@ bool areFinite(const HomingDrive &drive, const homing::JointCommand *commands) n
     return true;
 }
 
-void fill(const HomingDrive &drive, Outputs &out) noexcept {
-    out.status.isHoming = drive.isUnderWay();
-    const bool isQuiet = drive.foreign == nullptr && drive.own.summary().isQuiet;
+void HomingDrive::fill(Outputs &out) const noexcept {
+    out.status.isHoming = isUnderWay();
+    const bool isQuiet = foreign_ == nullptr && own_.summary().isQuiet;
     if (isQuiet && out.isHomingQuiet) [[likely]] {
         return;
     }
     out.isHomingQuiet = isQuiet;
-    with_module(drive, [&](const auto &module) {
-        for (int j = 0; j < drive.num_joints; ++j) {
-            const auto n = static_cast<std::size_t>(j);
-            out.status.joint[n].isHoming = module.isHoming(j);
-            out.joint[n].isIndexEnabled = module.isIndexWanted(j);
-            out.joint[n].isUnlockWanted = module.isUnlockWanted(j);
-            out.joint[n].home_state = module.step_number(j);
-        }
-    });
+    const homing::Module &homing = module();
+    for (int j = 0; j < num_joints_; ++j) {
+        const auto n = static_cast<std::size_t>(j);
+        out.status.joint[n].isHoming = homing.isHoming(j);
+        out.joint[n].isIndexEnabled = homing.isIndexWanted(j);
+        out.joint[n].isUnlockWanted = homing.isUnlockWanted(j);
+        out.joint[n].home_state = homing.step_number(j);
+    }
 }
 
 }  // namespace mw::motion

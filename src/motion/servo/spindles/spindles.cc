@@ -8,12 +8,8 @@ namespace mw::motion {
 
 namespace {
 
-std::size_t at(int i) noexcept {
+std::size_t index(int i) noexcept {
     return static_cast<std::size_t>(i);
-}
-
-bool hasSpindle(const Spindles &spindles, int n) noexcept {
-    return n >= 0 && n < spindles.count;
 }
 
 /// Constant surface speed: the speed follows the distance from the axis of rotation.
@@ -91,8 +87,8 @@ void end_orientation(Spindle &s) noexcept {
 
 }  // namespace
 
-CommandResult take(Spindles &spindles, const SpindleOn &command, bool isEnabled) noexcept {
-    if (!hasSpindle(spindles, command.spindle)) {
+CommandResult Spindles::take(const SpindleOn &command, bool isEnabled) noexcept {
+    if (!hasSpindle(command.spindle)) {
         return {Reason::NO_SUCH_SPINDLE};
     }
     if (!isEnabled) {
@@ -103,7 +99,7 @@ CommandResult take(Spindles &spindles, const SpindleOn &command, bool isEnabled)
     if (!areNumbers) {
         return {Reason::NOT_A_NUMBER};
     }
-    Spindle &s = spindles[command.spindle];
+    Spindle &s = at(command.spindle);
     s.speed_rpm = command.speed_rpm;
     s.css_factor = command.css_factor;
     s.css_max_rpm = command.css_max_rpm;
@@ -114,19 +110,19 @@ CommandResult take(Spindles &spindles, const SpindleOn &command, bool isEnabled)
     return {};
 }
 
-CommandResult take(Spindles &spindles, const SpindleOff &command) noexcept {
-    if (!hasSpindle(spindles, command.spindle)) {
+CommandResult Spindles::take(const SpindleOff &command) noexcept {
+    if (!hasSpindle(command.spindle)) {
         return {Reason::NO_SUCH_SPINDLE};
     }
-    Spindle &s = spindles[command.spindle];
+    Spindle &s = at(command.spindle);
     stop_turning(s);
     s.isBrakeOn = true;
     end_orientation(s);
     return {};
 }
 
-CommandResult take(Spindles &spindles, const SpindleOrient &command, bool isEnabled) noexcept {
-    if (!hasSpindle(spindles, command.spindle)) {
+CommandResult Spindles::take(const SpindleOrient &command, bool isEnabled) noexcept {
+    if (!hasSpindle(command.spindle)) {
         return {Reason::NO_SUCH_SPINDLE};
     }
     if (!isEnabled) {
@@ -135,7 +131,7 @@ CommandResult take(Spindles &spindles, const SpindleOrient &command, bool isEnab
     if (!std::isfinite(command.angle_deg)) {
         return {Reason::NOT_A_NUMBER};
     }
-    Spindle &s = spindles[command.spindle];
+    Spindle &s = at(command.spindle);
     stop_turning(s);
     s.isOrienting = true;
     s.isLocked = false;
@@ -147,11 +143,11 @@ CommandResult take(Spindles &spindles, const SpindleOrient &command, bool isEnab
     return {};
 }
 
-CommandResult take(Spindles &spindles, const SpindleBrake &command) noexcept {
-    if (!hasSpindle(spindles, command.spindle)) {
+CommandResult Spindles::take(const SpindleBrake &command) noexcept {
+    if (!hasSpindle(command.spindle)) {
         return {Reason::NO_SUCH_SPINDLE};
     }
-    Spindle &s = spindles[command.spindle];
+    Spindle &s = at(command.spindle);
     s.isBrakeOn = command.isOn;
     if (command.isOn) {
         stop_turning(s);
@@ -159,45 +155,45 @@ CommandResult take(Spindles &spindles, const SpindleBrake &command) noexcept {
     return {};
 }
 
-CommandResult take(Spindles &spindles, const SetScale &command) noexcept {
+CommandResult Spindles::take(const SetScale &command) noexcept {
     if (!(command.factor >= 0) || !std::isfinite(command.factor)) {
         return {Reason::OUT_OF_RANGE};
     }
-    if (command.spindle != -1 && !hasSpindle(spindles, command.spindle)) {
+    if (command.spindle != -1 && !hasSpindle(command.spindle)) {
         return {Reason::NO_SUCH_SPINDLE};
     }
-    for (int n = 0; n < spindles.count; ++n) {
+    for (int n = 0; n < count_; ++n) {
         if (command.spindle < 0 || command.spindle == n) {
-            spindles[n].scale = command.factor;
+            at(n).scale = command.factor;
         }
     }
     return {};
 }
 
-CommandResult take(Spindles &spindles, const SetSwitch &command) noexcept {
-    if (command.spindle != -1 && !hasSpindle(spindles, command.spindle)) {
+CommandResult Spindles::take(const SetSwitch &command) noexcept {
+    if (command.spindle != -1 && !hasSpindle(command.spindle)) {
         return {Reason::NO_SUCH_SPINDLE};
     }
-    for (int n = 0; n < spindles.count; ++n) {
+    for (int n = 0; n < count_; ++n) {
         if (command.spindle < 0 || command.spindle == n) {
-            spindles[n].isOverrideEnabled = command.isEnabled;
+            at(n).isOverrideEnabled = command.isEnabled;
         }
     }
     return {};
 }
 
-void switch_off(Spindles &spindles) noexcept {
-    for (Spindle &s : spindles.spindle) {
+void Spindles::switch_off() noexcept {
+    for (Spindle &s : spindle_) {
         stop_turning(s);
         s.isOrienting = false;
     }
 }
 
-std::uint32_t measure(Spindles &spindles, const Inputs &in) noexcept {
+std::uint32_t Spindles::read_feedback(const Inputs &in) noexcept {
     std::uint32_t lost = 0;
-    for (int n = 0; n < spindles.count; ++n) {
-        Spindle &s = spindles[n];
-        const SpindleInputs &pins = in.spindle[at(n)];
+    for (int n = 0; n < count_; ++n) {
+        Spindle &s = at(n);
+        const SpindleInputs &pins = in.spindle[index(n)];
         const bool isCounted = std::isfinite(pins.revs);
         s.turns = isCounted ? pins.revs : s.turns;
         s.speed_rps = std::isfinite(pins.speed_in_rps) ? pins.speed_in_rps : 0.0;
@@ -206,18 +202,17 @@ std::uint32_t measure(Spindles &spindles, const Inputs &in) noexcept {
     return lost;
 }
 
-std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings,
-                   const SpindleCycle &cycle) noexcept {
+std::uint32_t Spindles::step(const Inputs &in, const Settings &settings, const SpindleCycle &cycle) noexcept {
     std::uint32_t faults = 0;
-    for (int n = 0; n < spindles.count; ++n) {
-        Spindle &s = spindles[n];
-        const SpindleInputs &pins = in.spindle[at(n)];
+    for (int n = 0; n < count_; ++n) {
+        Spindle &s = at(n);
+        const SpindleInputs &pins = in.spindle[index(n)];
         follow_tap(s, n, cycle.tap);
         const double scale = s.isTapping ? s.tap_scale : scale_of(s);
         const double rpm = within_range(settings, n, speed_of(s, cycle.x) * scale * s.tap_factor);
         s.out_rpm = pins.isInhibited || !s.isOn ? 0.0 : rpm;
         s.commanded_rpm = within_range(settings, n, s.speed_rpm * s.tap_factor);
-        const CountedSpindle &counted = cycle.counted[at(n)];
+        const CountedSpindle &counted = cycle.counted[index(n)];
         watch(s.turn_back,
               {s.out_rpm / 60.0, s.turns, counted.turns_per_s, counted.step, cycle.period_s, s.speed_rps});
         faults |= hasOrientFailed(s, pins) ? 1U << n : 0U;
@@ -225,8 +220,8 @@ std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &setting
     return faults;
 }
 
-trajectory::SpindleBrakings brakings_of(const Spindles &spindles, int n, const Settings &settings) noexcept {
-    return motion::brakings_of(spindles[n].turn_back, settings.get(Parameter::SPINDLE_RAMP, n) / 60.0);
+trajectory::SpindleBrakings Spindles::brakings(int n, const Settings &settings) const noexcept {
+    return motion::brakings_of((*this)[n].turn_back, settings.get(Parameter::SPINDLE_RAMP, n) / 60.0);
 }
 
 bool isReversible(const Settings &settings, int n) noexcept {
@@ -238,11 +233,11 @@ bool isReady(const Spindle &spindle, const SpindleInputs &in) noexcept {
     return !spindle.isOn || in.isAtSpeed;
 }
 
-void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &out) noexcept {
-    for (int n = 0; n < spindles.count; ++n) {
-        const Spindle &s = spindles[n];
-        const SpindleInputs &pins = in.spindle[at(n)];
-        SpindleOutputs &o = out.spindle[at(n)];
+void Spindles::fill(const Inputs &in, bool isEnabled, Outputs &out) const noexcept {
+    for (int n = 0; n < count_; ++n) {
+        const Spindle &s = (*this)[n];
+        const SpindleInputs &pins = in.spindle[index(n)];
+        SpindleOutputs &o = out.spindle[index(n)];
         o.speed_rpm = s.out_rpm;
         // A drive with only these pins stops at S0, inhibit and an override of 0.
         o.isForward = isEnabled && s.out_rpm > 0;
@@ -254,7 +249,7 @@ void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &o
         o.orient_angle = s.orient_angle;
         o.orient_mode = s.orient_mode;
         o.isIndexEnabled = pins.isIndexEnabled;
-        SpindleStatus &st = out.status.spindle[at(n)];
+        SpindleStatus &st = out.status.spindle[index(n)];
         st.speed_cmd_rpm = s.commanded_rpm;
         st.scale = s.scale;
         st.speed_in_rps = pins.speed_in_rps;

@@ -38,29 +38,6 @@ struct TapTurning {
         1;  ///< factor of the speed at which the spindle was started; 0: off, and not switched on by itself
 };
 
-struct Spindles {
-    static constexpr int ORIENT_NONE = 0, ORIENT_IN_PROGRESS = 1, ORIENT_COMPLETE = 2, ORIENT_FAULTED = 3;
-
-    int count = 0;
-    std::array<Spindle, MAX_SPINDLES> spindle{};
-
-    Spindle &operator[](int n) noexcept { return spindle[static_cast<std::size_t>(n)]; }
-    const Spindle &operator[](int n) const noexcept { return spindle[static_cast<std::size_t>(n)]; }
-};
-
-CommandResult take(Spindles &spindles, const SpindleOn &command, bool isEnabled) noexcept;
-CommandResult take(Spindles &spindles, const SpindleOff &command) noexcept;
-CommandResult take(Spindles &spindles, const SpindleOrient &command, bool isEnabled) noexcept;
-CommandResult take(Spindles &spindles, const SpindleBrake &command) noexcept;
-/// Of one spindle or, with -1, of all.
-CommandResult take(Spindles &spindles, const SetScale &command) noexcept;
-CommandResult take(Spindles &spindles, const SetSwitch &command) noexcept;
-/// The machine goes off.
-void switch_off(Spindles &spindles) noexcept;
-
-/// Values of the pins of the spindles. Returns a bit per spindle whose feedback is no number.
-std::uint32_t measure(Spindles &spindles, const Inputs &in) noexcept;
-
 /// A spindle as its counts show it.
 struct CountedSpindle {
     double turns_per_s = 0;
@@ -73,17 +50,43 @@ struct SpindleCycle {
     double period_s = 1e-3;
     std::array<CountedSpindle, MAX_SPINDLES> counted{};
 };
-/// One cycle. Returns a bit per spindle whose orientation has failed in it; `orient_fault` has the code.
-std::uint32_t step(Spindles &spindles, const Inputs &in, const Settings &settings,
-                   const SpindleCycle &cycle) noexcept;
-
-/// How a spindle stops when it is commanded to reverse.
-trajectory::SpindleBrakings brakings_of(const Spindles &spindles, int n, const Settings &settings) noexcept;
 /// It may run in both directions.
 bool isReversible(const Settings &settings, int n) noexcept;
-
 /// Off, or at speed.
 bool isReady(const Spindle &spindle, const SpindleInputs &in) noexcept;
-void fill(const Spindles &spindles, const Inputs &in, bool isEnabled, Outputs &out) noexcept;
+
+class Spindles {
+  public:
+    static constexpr int ORIENT_NONE = 0, ORIENT_IN_PROGRESS = 1, ORIENT_COMPLETE = 2, ORIENT_FAULTED = 3;
+
+    explicit Spindles(int count) noexcept : count_(count) {}
+
+    CommandResult take(const SpindleOn &command, bool isEnabled) noexcept;
+    CommandResult take(const SpindleOff &command) noexcept;
+    CommandResult take(const SpindleOrient &command, bool isEnabled) noexcept;
+    CommandResult take(const SpindleBrake &command) noexcept;
+    /// Of one spindle or, with -1, of all.
+    CommandResult take(const SetScale &command) noexcept;
+    CommandResult take(const SetSwitch &command) noexcept;
+    /// The machine goes off.
+    void switch_off() noexcept;
+
+    /// Values of the pins of the spindles. Returns a bit per spindle whose feedback is no number.
+    std::uint32_t read_feedback(const Inputs &in) noexcept;
+    /// One cycle. Returns a bit per spindle whose orientation has failed in it; `orient_fault` has the code.
+    std::uint32_t step(const Inputs &in, const Settings &settings, const SpindleCycle &cycle) noexcept;
+
+    const Spindle &operator[](int n) const noexcept { return spindle_[static_cast<std::size_t>(n)]; }
+    /// How a spindle stops when it is commanded to reverse.
+    trajectory::SpindleBrakings brakings(int n, const Settings &settings) const noexcept;
+    void fill(const Inputs &in, bool isEnabled, Outputs &out) const noexcept;
+
+  private:
+    bool hasSpindle(int n) const noexcept { return n >= 0 && n < count_; }
+    Spindle &at(int n) noexcept { return spindle_[static_cast<std::size_t>(n)]; }
+
+    int count_;
+    std::array<Spindle, MAX_SPINDLES> spindle_{};
+};
 
 }  // namespace mw::motion

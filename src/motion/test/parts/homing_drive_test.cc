@@ -11,58 +11,56 @@ namespace mw::motion {
 namespace {
 
 struct HomingDrivePart : testing::Test {
-    HomingDrive drive;
+    HomingDrive drive{1e-3, nullptr};
     Settings settings;
     HomeConditions conditions;
 
     HomingDrivePart() {
-        drive.num_joints = 2;
-        drive.num_to_home = 2;
-        drive.own.set_num_joints(2);
+        drive.use_joints(2, 2);
         conditions.isReady = true;
         for (std::int16_t j = 0; j < 2; ++j) {
             settings.set({static_cast<std::uint16_t>(Parameter::JOINT_HOME_SEQUENCE), j, 0}, 2, 1);
-            configure(drive, j, settings);
+            drive.configure(j, settings);
         }
     }
     void run() {
         for (int n = 0; n < 20; ++n) {
             homing::JointInput inputs[MAX_JOINTS];
             homing::JointCommand commands[MAX_JOINTS];
-            drive.own.step(inputs, commands);
+            drive.step(inputs, commands);
         }
     }
 };
 
 TEST_F(HomingDrivePart, BeginsWhenNothingMovesAnyMore) {
-    ASSERT_EQ(take(drive, Home{-1}, conditions).reason, Reason::NONE);
+    ASSERT_EQ(drive.take(Home{-1}, conditions).reason, Reason::NONE);
     EXPECT_TRUE(drive.isUnderWay());
     conditions.isMoving = true;
-    begin_due(drive, conditions);
-    EXPECT_FALSE(drive.own.isActive());
+    drive.begin_due(conditions);
+    EXPECT_FALSE(drive.isActive());
     conditions.isMoving = false;
-    EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::HOMING);
-    begin_due(drive, conditions);
-    EXPECT_TRUE(drive.own.isActive());
+    EXPECT_EQ(drive.take(Home{0}, conditions).reason, Reason::HOMING);
+    drive.begin_due(conditions);
+    EXPECT_TRUE(drive.isActive());
     run();
-    EXPECT_EQ(homed_mask(drive), 3U);
+    EXPECT_EQ(drive.homed_joints(), 3U);
     EXPECT_FALSE(drive.isUnderWay());
 }
 
 TEST_F(HomingDrivePart, EachReasonAgainstHomingIsTold) {
-    EXPECT_EQ(take(drive, Home{2}, conditions).reason, Reason::NO_SUCH_JOINT);
+    EXPECT_EQ(drive.take(Home{2}, conditions).reason, Reason::NO_SUCH_JOINT);
     conditions.isInhibited = true;
-    EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::HOMING_INHIBITED);
+    EXPECT_EQ(drive.take(Home{0}, conditions).reason, Reason::HOMING_INHIBITED);
     conditions.mode = Mode::TELEOP;
-    EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::WRONG_MODE);
+    EXPECT_EQ(drive.take(Home{0}, conditions).reason, Reason::WRONG_MODE);
     conditions.isReady = false;
-    EXPECT_EQ(take(drive, Home{0}, conditions).reason, Reason::NOT_ENABLED);
+    EXPECT_EQ(drive.take(Home{0}, conditions).reason, Reason::NOT_ENABLED);
 }
 
 TEST_F(HomingDrivePart, AJointThatIsLeftOutIsNotHomedWhicheverItIs) {
     for (const int joint : {0, 1}) {
         conditions.inactive = 1U << joint;
-        const CommandResult verdict = take(drive, Home{joint}, conditions);
+        const CommandResult verdict = drive.take(Home{joint}, conditions);
         EXPECT_EQ(verdict.reason, Reason::JOINT_INACTIVE);
         EXPECT_EQ(verdict.index, joint);
         EXPECT_FALSE(drive.isUnderWay());
@@ -81,68 +79,69 @@ TEST_F(HomingDrivePart, PlayIsTakenUpAtNoMoreThanTheSpeedOfTheJoint) {
     const double seconds = 2 * std::sqrt(0.1 / 50);  // with half of the acceleration, there and back
     for (const double latch : {2.0, -8.0, 50.0}) {
         set(Parameter::JOINT_HOME_LATCH_VEL, latch);
-        configure(drive, 0, settings);
-        EXPECT_NEAR(drive.own.parameters(0).clearance, seconds * std::min(std::abs(latch), 10.0), 1e-12);
+        drive.configure(0, settings);
+        EXPECT_NEAR(drive.parameters(0).clearance, seconds * std::min(std::abs(latch), 10.0), 1e-12);
     }
 }
 
 TEST_F(HomingDrivePart, VolatileHomesAreLostWithPower) {
     settings.set({static_cast<std::uint16_t>(Parameter::JOINT_VOLATILE_HOME), 1, 1}, 2, 1);
-    take(drive, Home{-1}, conditions);
-    begin_due(drive, conditions);
+    drive.take(Home{-1}, conditions);
+    drive.begin_due(conditions);
     run();
-    ASSERT_EQ(homed_mask(drive), 3U);
-    switch_off(drive, settings);
-    EXPECT_EQ(homed_mask(drive), 1U);
+    ASSERT_EQ(drive.homed_joints(), 3U);
+    drive.switch_off(settings);
+    EXPECT_EQ(drive.homed_joints(), 1U);
     conditions.isMoving = true;
-    EXPECT_EQ(take(drive, Unhome{0}, conditions, settings).reason, Reason::MOVING);
+    EXPECT_EQ(drive.take(Unhome{0}, conditions, settings).reason, Reason::MOVING);
     conditions.isMoving = false;
     conditions.mode = Mode::COORD;
-    EXPECT_EQ(take(drive, Unhome{0}, conditions, settings).reason, Reason::WRONG_MODE);
-    EXPECT_EQ(homed_mask(drive), 1U) << "a rejected command changes nothing";
+    EXPECT_EQ(drive.take(Unhome{0}, conditions, settings).reason, Reason::WRONG_MODE);
+    EXPECT_EQ(drive.homed_joints(), 1U) << "a rejected command changes nothing";
     conditions.mode = Mode::FREE;
-    EXPECT_EQ(take(drive, Unhome{-2}, conditions, settings).reason, Reason::NONE);
-    EXPECT_EQ(homed_mask(drive), 1U) << "only volatile ones";
-    take(drive, Unhome{-1}, conditions, settings);
-    EXPECT_EQ(homed_mask(drive), 0U);
+    EXPECT_EQ(drive.take(Unhome{-2}, conditions, settings).reason, Reason::NONE);
+    EXPECT_EQ(drive.homed_joints(), 1U) << "only volatile ones";
+    drive.take(Unhome{-1}, conditions, settings);
+    EXPECT_EQ(drive.homed_joints(), 0U);
 }
 
 TEST_F(HomingDrivePart, WhatFailsIsToldOnceAndWhatIsAbortedIsNot) {
     settings.set({static_cast<std::uint16_t>(Parameter::JOINT_HOME_SEARCH_VEL), 0, 5}, 2, 1);
-    configure(drive, 0, settings);  // searches, and has no speed to latch with
-    take(drive, Home{0}, conditions);
-    begin_due(drive, conditions);
+    drive.configure(0, settings);  // searches, and has no speed to latch with
+    drive.take(Home{0}, conditions);
+    drive.begin_due(conditions);
     run();
-    EXPECT_EQ(take_failure(drive).joint, 0);
-    EXPECT_EQ(take_failure(drive).joint, -1);
-    take(drive, Home{1}, conditions);
-    begin_due(drive, conditions);
-    abort(drive, homing::event::ABORT);
-    EXPECT_EQ(take_failure(drive).joint, -1);
+    EXPECT_EQ(drive.take_failure().joint, 0);
+    EXPECT_EQ(drive.take_failure().joint, -1);
+    drive.take(Home{1}, conditions);
+    drive.begin_due(conditions);
+    drive.abort(homing::event::ABORT);
+    EXPECT_EQ(drive.take_failure().joint, -1);
     EXPECT_FALSE(drive.isUnderWay());
 }
 
 TEST_F(HomingDrivePart, AModuleOfAUserThatGivesUpHasFailedAndOneThatIsToldToEndHasNot) {
     ForeignModule module;
-    drive.foreign = &module;
+    drive = HomingDrive(1e-3, &module);
+    drive.use_joints(2, 2);
     for (const bool isTold : {true, false, true}) {
-        take(drive, Home{0}, conditions);
-        begin_due(drive, conditions);
-        EXPECT_EQ(take_failure(drive).joint, -1) << "during the move";
+        drive.take(Home{0}, conditions);
+        drive.begin_due(conditions);
+        EXPECT_EQ(drive.take_failure().joint, -1) << "during the move";
         if (isTold) {
-            abort(drive, homing::event::ABORT);
+            drive.abort(homing::event::ABORT);
         }
         module.isBusy = false;
-        const HomingFailure failure = take_failure(drive);
+        const HomingFailure failure = drive.take_failure();
         EXPECT_EQ(failure.joint, isTold ? -1 : 0);
         EXPECT_EQ(failure.why, isTold ? homing::Failure::NONE : homing::Failure::MODULE_FAILED);
     }
-    take(drive, Home{0}, conditions);
-    begin_due(drive, conditions);
-    EXPECT_EQ(take_failure(drive).joint, -1);
+    drive.take(Home{0}, conditions);
+    drive.begin_due(conditions);
+    EXPECT_EQ(drive.take_failure().joint, -1);
     module.isBusy = false;
     module.areHomed = true;
-    EXPECT_EQ(take_failure(drive).joint, -1) << "it has homed what it was to home";
+    EXPECT_EQ(drive.take_failure().joint, -1) << "it has homed what it was to home";
 }
 
 }  // namespace

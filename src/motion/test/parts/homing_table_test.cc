@@ -152,20 +152,19 @@ std::string made_table() {
 
 /// Joint 0 is walked through; joint 1 homes in the same sequence.
 struct Walk {
-    HomingDrive drive;
+    homing::Homing own;
+    HomingDrive drive{1e-3, &own};
     Settings settings;
     homing::JointInput inputs[MAX_JOINTS];
     homing::JointCommand commands[MAX_JOINTS];
     bool hasStopped = false;
 
     explicit Walk(State target) {
-        drive.num_joints = 2;
-        drive.num_to_home = 2;
-        drive.own.set_num_joints(2);
+        drive.use_joints(2, 2);
         const bool isTeam = target == State::LATCHED;
         const bool isOtherReady = target == State::FINAL || target == State::LOCK;
         for (int j = 0; j < 2; ++j) {
-            homing::Parameters &p = drive.own.parameters(j);
+            homing::Parameters &p = own.parameters(j);
             p.search_vel = j == 1 && isOtherReady ? 0 : -10;
             p.latch_vel = p.search_vel / 5;
             p.isUsingIndex = p.search_vel != 0 && (j == 0 || isTeam);
@@ -178,15 +177,15 @@ struct Walk {
             inputs[j].max_acceleration = 500;
         }
     }
-    State state() const { return drive.own.state(0); }
+    State state() const { return own.state(0); }
     void step() {
         for (int j = 0; j < 2; ++j) {
-            inputs[j].isIndexEnabled = drive.own.isIndexWanted(j);
+            inputs[j].isIndexEnabled = own.isIndexWanted(j);
         }
         step_as_is();
     }
     void step_as_is() {
-        drive.own.step(inputs, commands);
+        own.step(inputs, commands);
         hasStopped = hasStopped || commands[0].move == homing::Move::STOP;
     }
     /// What is so in `state` as long as nothing happens.
@@ -199,7 +198,7 @@ struct Walk {
         inputs[0].isUnlocked = state != State::IDLE && state != State::UNLOCK;
         inputs[1].isUnlocked = inputs[0].isUnlocked;
         // The other one searches, or does the same up to the latch.
-        if (drive.own.parameters(1).axis == 0 && state != State::INDEX && state != State::LATCHED) {
+        if (own.parameters(1).axis == 0 && state != State::INDEX && state != State::LATCHED) {
             inputs[1] = inputs[0];
         }
     }
@@ -209,18 +208,18 @@ struct Walk {
         inputs[0].isSwitchClosed = state == State::START || state == State::SEARCH ||
                                    state == State::SEARCH_STOP || state == State::LATCH;
         inputs[0].isUnlocked = state != State::LOCK;
-        const bool isTogether = drive.own.parameters(1).axis == 0 && state != State::LATCH;
+        const bool isTogether = own.parameters(1).axis == 0 && state != State::LATCH;
         if (isTogether && state != State::INDEX) {
             inputs[1] = inputs[0];
         }
         inputs[0].isIndexEnabled = false;
-        inputs[1].isIndexEnabled = drive.own.isIndexWanted(1);
+        inputs[1].isIndexEnabled = own.isIndexWanted(1);
         step_while_in(state);
     }
     /// Long enough for contacts to settle.
     void step_while_in(State state) {
         constexpr int CYCLES = 25;
-        for (int n = 0; n < CYCLES && drive.own.state(0) == state; ++n) {
+        for (int n = 0; n < CYCLES && own.state(0) == state; ++n) {
             step_as_is();
         }
     }
@@ -229,7 +228,7 @@ struct Walk {
         if (target == State::IDLE) {
             return true;
         }
-        drive.own.start(0);
+        own.start(0);
         for (int n = 0; n < 20 && state() != target && state() != State::IDLE; ++n) {
             be_quiet(state());
             lead_on(state());
@@ -262,15 +261,15 @@ const std::vector<WalkedEvent> WALKED = {
      }},
     {"index",
      [](Walk &w) {
-         w.inputs[1].isIndexEnabled = w.drive.own.isIndexWanted(1);
+         w.inputs[1].isIndexEnabled = w.own.isIndexWanted(1);
          w.inputs[0].isIndexEnabled = false;
          w.step_as_is();
      }},
     {"stopped",
      [](Walk &w) {
          w.inputs[0].isAtRest = true;
-         w.inputs[0].isIndexEnabled = w.drive.own.isIndexWanted(0);
-         w.inputs[1].isIndexEnabled = w.drive.own.isIndexWanted(1);
+         w.inputs[0].isIndexEnabled = w.own.isIndexWanted(0);
+         w.inputs[1].isIndexEnabled = w.own.isIndexWanted(1);
          w.step_while_in(w.state());
      }},
     {"unlocked",
@@ -292,17 +291,17 @@ const std::vector<WalkedEvent> WALKED = {
      }},
     {"limit",
      [](Walk &w) {
-         abort(w.drive, event::LIMIT, 0);
+         w.drive.abort(event::LIMIT, 0);
          w.step();
      }},
     {"abort",
      [](Walk &w) {
-         abort(w.drive, event::ABORT);
+         w.drive.abort(event::ABORT);
          w.step();
      }},
     {"off",
      [](Walk &w) {
-         switch_off(w.drive, w.settings);
+         w.drive.switch_off(w.settings);
          w.step();
      }},
     {"inhibit",
@@ -310,12 +309,12 @@ const std::vector<WalkedEvent> WALKED = {
          HomeConditions conditions;
          conditions.isReady = true;
          conditions.isInhibited = true;
-         EXPECT_NE(take(w.drive, Home{0}, conditions).reason, Reason::NONE);
+         EXPECT_NE(w.drive.take(Home{0}, conditions).reason, Reason::NONE);
          w.step();
      }},
     {"another fails",
      [](Walk &w) {
-         abort(w.drive, event::LIMIT, 1);
+         w.drive.abort(event::LIMIT, 1);
          w.step();
      }},
 };
@@ -329,16 +328,16 @@ std::string outcome(State from, const WalkedEvent &what) {
     w.hasStopped = false;
     what.happen(w);
     Failure why{};
-    const int joint = w.drive.own.take_failure(why);
+    const int joint = w.own.take_failure(why);
     const State next = w.state();
     const bool isEnd = joint >= 0 && from != State::IDLE;
     if (isEnd) {
         EXPECT_EQ(next, State::IDLE);
         EXPECT_TRUE(w.hasStopped) << word(from) << ' ' << what.name;
-        EXPECT_FALSE(w.drive.own.isHomed(0) || w.drive.own.isActive() || w.drive.own.isIndexWanted(0));
+        EXPECT_FALSE(w.own.isHomed(0) || w.own.isActive() || w.own.isIndexWanted(0));
         return joint == 0 ? "**" + word(why) + "**" : "stops";
     }
-    if (w.drive.own.isHomed(0)) {
+    if (w.own.isHomed(0)) {
         return "homed";
     }
     return next == from ? "" : word(next);

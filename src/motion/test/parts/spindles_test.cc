@@ -12,18 +12,17 @@ namespace mw::motion {
 namespace {
 
 struct SpindlesPart : testing::Test {
-    Spindles spindles;
+    Spindles spindles{2};
     Inputs in;
     Settings settings;
     std::uint32_t failed = 0;
     TapTurning tap;
 
-    SpindlesPart() { spindles.count = 2; }
     double rpm(double x = 0) {
         SpindleCycle cycle;
         cycle.x = x;
         cycle.tap = tap;
-        failed = step(spindles, in, settings, cycle);
+        failed = spindles.step(in, settings, cycle);
         return spindles[0].out_rpm;
     }
     void set(Parameter p, double value) {
@@ -32,13 +31,13 @@ struct SpindlesPart : testing::Test {
 };
 
 TEST_F(SpindlesPart, TurnOnlyWhileTheMachineIsOn) {
-    EXPECT_EQ(take(spindles, SpindleOn{0, 500}, false).reason, Reason::NOT_ENABLED);
-    EXPECT_EQ(take(spindles, SpindleOn{2, 500}, true).reason, Reason::NO_SUCH_SPINDLE);
-    EXPECT_EQ(take(spindles, SpindleOn{0, NAN}, true).reason, Reason::NOT_A_NUMBER);
+    EXPECT_EQ(spindles.take(SpindleOn{0, 500}, false).reason, Reason::NOT_ENABLED);
+    EXPECT_EQ(spindles.take(SpindleOn{2, 500}, true).reason, Reason::NO_SUCH_SPINDLE);
+    EXPECT_EQ(spindles.take(SpindleOn{0, NAN}, true).reason, Reason::NOT_A_NUMBER);
     EXPECT_EQ(rpm(), 0);
-    EXPECT_EQ(take(spindles, SpindleOn{0, -500}, true).reason, Reason::NONE);
+    EXPECT_EQ(spindles.take(SpindleOn{0, -500}, true).reason, Reason::NONE);
     EXPECT_EQ(rpm(), -500);
-    switch_off(spindles);
+    spindles.switch_off();
     EXPECT_EQ(rpm(), 0);
 }
 
@@ -46,13 +45,13 @@ TEST_F(SpindlesPart, TurnOnlyWhileTheMachineIsOn) {
 TEST_F(SpindlesPart, TheBrakeIsOffWhileOneTurns) {
     const auto isBrakeOn = [&] { return spindles[0].isBrakeOn; };
     for (const double speed : {300.0, -300.0}) {
-        take(spindles, SpindleBrake{0, true});
+        spindles.take(SpindleBrake{0, true});
         EXPECT_TRUE(isBrakeOn());
-        take(spindles, SpindleOn{0, speed}, true);
+        spindles.take(SpindleOn{0, speed}, true);
         EXPECT_FALSE(isBrakeOn());
-        take(spindles, SpindleOff{0});
+        spindles.take(SpindleOff{0});
         EXPECT_TRUE(isBrakeOn());
-        take(spindles, SpindleBrake{0, false});
+        spindles.take(SpindleBrake{0, false});
         EXPECT_FALSE(isBrakeOn());
     }
 }
@@ -60,15 +59,15 @@ TEST_F(SpindlesPart, TheBrakeIsOffWhileOneTurns) {
 TEST_F(SpindlesPart, SpeedIsScaledAndKeptWithinItsRange) {
     set(Parameter::SPINDLE_MAX_FORWARD, 1000);
     set(Parameter::SPINDLE_MIN_FORWARD, 100);
-    take(spindles, SpindleOn{0, 800}, true);
-    take(spindles, SetScale{Scale::SPINDLE, -1, 1.5});
+    spindles.take(SpindleOn{0, 800}, true);
+    spindles.take(SetScale{Scale::SPINDLE, -1, 1.5});
     EXPECT_EQ(rpm(), 1000);
-    take(spindles, SetScale{Scale::SPINDLE, 0, 0.01});
+    spindles.take(SetScale{Scale::SPINDLE, 0, 0.01});
     EXPECT_EQ(rpm(), 100);
-    take(spindles, SetSwitch{Switch::SPINDLE_OVERRIDE, 0, false});
+    spindles.take(SetSwitch{Switch::SPINDLE_OVERRIDE, 0, false});
     EXPECT_EQ(rpm(), 800);
-    EXPECT_EQ(take(spindles, SetScale{Scale::SPINDLE, 2, 1}).reason, Reason::NO_SUCH_SPINDLE);
-    EXPECT_EQ(take(spindles, SetScale{Scale::SPINDLE, 0, -1}).reason, Reason::OUT_OF_RANGE);
+    EXPECT_EQ(spindles.take(SetScale{Scale::SPINDLE, 2, 1}).reason, Reason::NO_SUCH_SPINDLE);
+    EXPECT_EQ(spindles.take(SetScale{Scale::SPINDLE, 0, -1}).reason, Reason::OUT_OF_RANGE);
 }
 
 TEST_F(SpindlesPart, ConstantSurfaceSpeedFollowsTheDistanceFromTheAxis) {
@@ -76,7 +75,7 @@ TEST_F(SpindlesPart, ConstantSurfaceSpeedFollowsTheDistanceFromTheAxis) {
     on.css_factor = 20000;
     on.css_max_rpm = 2000;
     on.css_x_offset = 5;
-    take(spindles, on, true);
+    spindles.take(on, true);
     EXPECT_EQ(rpm(25), 1000);
     EXPECT_EQ(rpm(-35), 500);
     EXPECT_EQ(rpm(5), 2000) << "at the axis";
@@ -90,21 +89,21 @@ TEST_F(SpindlesPart, ConstantSurfaceSpeedKeepsTheLimitsOfTheSpindle) {
         SpindleOn on{0, sign * 1000};
         on.css_factor = 20000;
         on.css_max_rpm = 2000;
-        take(spindles, on, true);
+        spindles.take(on, true);
         EXPECT_EQ(rpm(25), sign * 800);
         EXPECT_EQ(rpm(0), sign * (sign > 0 ? 1500 : 900)) << "at the axis, where D allows more";
         EXPECT_EQ(rpm(1000), sign * (sign > 0 ? 200 : 20)) << "far out";
-        take(spindles, SetScale{Scale::SPINDLE, 0, 2});
+        spindles.take(SetScale{Scale::SPINDLE, 0, 2});
         EXPECT_EQ(rpm(25), sign * (sign > 0 ? 1500 : 900)) << "the override is within the limits";
-        take(spindles, SetScale{Scale::SPINDLE, 0, 0.1});
+        spindles.take(SetScale{Scale::SPINDLE, 0, 0.1});
         EXPECT_EQ(rpm(25), sign * (sign > 0 ? 200 : 80));
-        take(spindles, SetScale{Scale::SPINDLE, 0, 1});
+        spindles.take(SetScale{Scale::SPINDLE, 0, 1});
     }
 }
 
 /// Each has its command, its limits and its override: a command to one changes no other.
 TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther) {
-    spindles.count = MAX_SPINDLES;
+    spindles = Spindles(MAX_SPINDLES);
     std::mt19937 random(8);
     const auto real = [&](double low, double high) {
         return std::uniform_real_distribution(low, high)(random);
@@ -120,15 +119,15 @@ TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther) {
         switch (std::uniform_int_distribution(0, 5)(random)) {
         case 0:
             e.speed = real(1, 3000);
-            take(spindles, SpindleOn{n, e.speed}, true);
+            spindles.take(SpindleOn{n, e.speed}, true);
             break;
         case 1:
             e.speed = 0;
-            take(spindles, SpindleOff{n});
+            spindles.take(SpindleOff{n});
             break;
         case 2:
             e.scale = real(0, 2);
-            take(spindles, SetScale{Scale::SPINDLE, n, e.scale});
+            spindles.take(SetScale{Scale::SPINDLE, n, e.scale});
             break;
         case 3:
             e.most = real(500, 2500);
@@ -158,7 +157,7 @@ TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther) {
 }
 
 TEST_F(SpindlesPart, AnInhibitedSpindleStandsAndGoesOnByItself) {
-    take(spindles, SpindleOn{0, 300}, true);
+    spindles.take(SpindleOn{0, 300}, true);
     in.spindle[0].isInhibited = true;
     EXPECT_EQ(rpm(), 0);
     in.spindle[0].isInhibited = false;
@@ -166,15 +165,15 @@ TEST_F(SpindlesPart, AnInhibitedSpindleStandsAndGoesOnByItself) {
 }
 
 TEST_F(SpindlesPart, OrientationLocksOrFailsOnce) {
-    take(spindles, SpindleOn{0, 300}, true);
-    ASSERT_EQ(take(spindles, SpindleOrient{0, 90, 1}, true).reason, Reason::NONE);
+    spindles.take(SpindleOn{0, 300}, true);
+    ASSERT_EQ(spindles.take(SpindleOrient{0, 90, 1}, true).reason, Reason::NONE);
     EXPECT_EQ(rpm(), 0);
     EXPECT_TRUE(spindles[0].isOrienting);
     in.spindle[0].isOriented = true;
     rpm();
     EXPECT_TRUE(spindles[0].isLocked && spindles[0].isBrakeOn);
     EXPECT_EQ(spindles[0].orient_state, Spindles::ORIENT_COMPLETE);
-    take(spindles, SpindleOrient{0, 0, 0}, true);
+    spindles.take(SpindleOrient{0, 0, 0}, true);
     in.spindle[0].orient_fault = 7;
     rpm();
     EXPECT_EQ(failed, 1U);
@@ -187,10 +186,10 @@ TEST_F(SpindlesPart, OrientationLocksOrFailsOnce) {
 TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger) {
     const auto orient_pin = [&] {
         Outputs out;
-        fill(spindles, in, true, out);
+        spindles.fill(in, true, out);
         return out.spindle[0].isOrienting;
     };
-    take(spindles, SpindleOrient{0, 90, 1}, true);
+    spindles.take(SpindleOrient{0, 90, 1}, true);
     rpm();
     EXPECT_TRUE(orient_pin());
     in.spindle[0].orient_fault = 7;
@@ -205,16 +204,16 @@ TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger) {
 }
 
 TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith) {
-    take(spindles, SpindleOn{0, 300}, true);
-    take(spindles, SetScale{Scale::SPINDLE, 0, 1.2});
+    spindles.take(SpindleOn{0, 300}, true);
+    spindles.take(SetScale{Scale::SPINDLE, 0, 1.2});
     tap = {0, 1};
     EXPECT_EQ(rpm(), 360);
-    take(spindles, SetScale{Scale::SPINDLE, 0, 0.5});
+    spindles.take(SetScale{Scale::SPINDLE, 0, 0.5});
     EXPECT_EQ(rpm(), 360);
     tap = {0, -2};
     EXPECT_EQ(rpm(), -720);
     Outputs out;
-    fill(spindles, in, true, out);
+    spindles.fill(in, true, out);
     EXPECT_TRUE(out.spindle[0].isReverse);
     EXPECT_FALSE(out.spindle[0].isForward);
     EXPECT_EQ(out.status.spindle[0].direction, -1);
@@ -224,8 +223,8 @@ TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith) {
 }
 
 TEST_F(SpindlesPart, ATapThatIsStoppedLeavesItOff) {
-    take(spindles, SpindleOn{0, 300}, true);
-    take(spindles, SpindleOn{1, 200}, true);
+    spindles.take(SpindleOn{0, 300}, true);
+    spindles.take(SpindleOn{1, 200}, true);
     tap = {0, -1};
     EXPECT_EQ(rpm(), -300);
     tap = {0, 0};
@@ -235,23 +234,23 @@ TEST_F(SpindlesPart, ATapThatIsStoppedLeavesItOff) {
     EXPECT_FALSE(spindles[0].isOn);
     EXPECT_TRUE(spindles[0].isBrakeOn);
     EXPECT_EQ(spindles[1].out_rpm, 200) << "the other continues";
-    take(spindles, SpindleOn{0, 300}, true);
+    spindles.take(SpindleOn{0, 300}, true);
     EXPECT_EQ(rpm(), 300);
 }
 
 TEST_F(SpindlesPart, StatusTellsWhatEachDoes) {
-    take(spindles, SpindleOn{1, -60}, true);
+    spindles.take(SpindleOn{1, -60}, true);
     in.spindle[1].isAtSpeed = false;
     rpm();
     Outputs out;
-    fill(spindles, in, true, out);
+    spindles.fill(in, true, out);
     EXPECT_TRUE(out.spindle[1].isReverse);
     EXPECT_EQ(out.status.spindle[1].direction, -1);
     EXPECT_FALSE(isReady(spindles[1], in.spindle[1]));
     EXPECT_TRUE(isReady(spindles[0], in.spindle[0]));
-    take(spindles, SpindleBrake{1, true});
+    spindles.take(SpindleBrake{1, true});
     EXPECT_FALSE(spindles[1].isOn);
-    take(spindles, SpindleOff{1});
+    spindles.take(SpindleOff{1});
     EXPECT_TRUE(spindles[1].isBrakeOn);
 }
 
@@ -261,7 +260,7 @@ TEST_F(SpindlesPart, PinsOfOnAndDirectionAreFalseWhileTheOutputIsZero) {
     const auto expect_pins = [this](bool isForward, bool isReverse) {
         rpm();
         Outputs out;
-        fill(spindles, in, true, out);
+        spindles.fill(in, true, out);
         EXPECT_EQ(out.spindle[0].isOn, isForward || isReverse);
         EXPECT_EQ(out.spindle[0].isForward, isForward);
         EXPECT_EQ(out.spindle[0].isReverse, isReverse);
@@ -269,17 +268,17 @@ TEST_F(SpindlesPart, PinsOfOnAndDirectionAreFalseWhileTheOutputIsZero) {
         return out.status.spindle[0];
     };
     for (const double speed : {300.0, -300.0}) {
-        take(spindles, SpindleOn{0, speed}, true);
+        spindles.take(SpindleOn{0, speed}, true);
         expect_pins(speed > 0, speed < 0);
         in.spindle[0].isInhibited = true;
         EXPECT_TRUE(expect_pins(false, false).isOn) << "the command stays";
         in.spindle[0].isInhibited = false;
         expect_pins(speed > 0, speed < 0);
-        take(spindles, SetScale{Scale::SPINDLE, 0, 0});
+        spindles.take(SetScale{Scale::SPINDLE, 0, 0});
         EXPECT_TRUE(expect_pins(false, false).isOn);
-        take(spindles, SetScale{Scale::SPINDLE, 0, 1});
+        spindles.take(SetScale{Scale::SPINDLE, 0, 1});
         expect_pins(speed > 0, speed < 0);
-        take(spindles, SpindleOn{0, 0}, true);  // S0
+        spindles.take(SpindleOn{0, 0}, true);  // S0
         const SpindleStatus status = expect_pins(false, false);
         EXPECT_FALSE(status.isOn);
         EXPECT_EQ(status.direction, 1);
@@ -288,39 +287,30 @@ TEST_F(SpindlesPart, PinsOfOnAndDirectionAreFalseWhileTheOutputIsZero) {
 
 TEST_F(SpindlesPart, StatusShowsTheCommandWithinTheLimitsAndBeforeTheOverride) {
     set(Parameter::SPINDLE_MAX_FORWARD, 1000);
-    take(spindles, SpindleOn{0, 2000}, true);
-    take(spindles, SetScale{Scale::SPINDLE, 0, 0.5});
+    spindles.take(SpindleOn{0, 2000}, true);
+    spindles.take(SetScale{Scale::SPINDLE, 0, 0.5});
     rpm();
     Outputs out;
-    fill(spindles, in, true, out);
+    spindles.fill(in, true, out);
     EXPECT_EQ(out.status.spindle[0].speed_cmd_rpm, 1000);
 }
 
-TEST_F(SpindlesPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf) {
-    Spindle &s = spindles[1];
-    s.isOn = true;
-    s.commanded_rpm = 120;
-    s.scale = 0.5;
-    s.out_rpm = 60;
-    s.orient_angle = 33;
-    s.orient_mode = 2;
-    s.orient_state = Spindles::ORIENT_FAULTED;
-    s.orient_fault = 7;
+TEST_F(SpindlesPart, PinsAndStatusShowASpindleThatRuns) {
+    spindles.take(SpindleOn{1, 120}, true);
+    spindles.take(SetScale{Scale::SPINDLE, 1, 0.5});
     in.spindle[1].speed_in_rps = 1.25;
     in.spindle[1].revs = 17.5;
     for (const bool value : {true, false}) {
-        s.isBrakeOn = s.isOrienting = s.isLocked = s.isOverrideEnabled = value;
+        SetSwitch enable{Switch::SPINDLE_OVERRIDE, 1, value};
+        spindles.take(enable);
         in.spindle[1].isAtSpeed = in.spindle[1].isIndexEnabled = value;
+        rpm();
         Outputs out;
-        fill(spindles, in, true, out);
+        spindles.fill(in, true, out);
         const SpindleOutputs &pins = out.spindle[1];
-        EXPECT_EQ(pins.speed_rpm, 60);
+        EXPECT_EQ(pins.speed_rpm, value ? 60 : 120);
         EXPECT_TRUE(pins.isOn && pins.isForward && !pins.isReverse);
-        EXPECT_EQ(pins.isBrakeOn, value);
-        EXPECT_EQ(pins.isOrienting, value);
-        EXPECT_EQ(pins.isLocked, value);
-        EXPECT_EQ(pins.orient_angle, 33);
-        EXPECT_EQ(pins.orient_mode, 2);
+        EXPECT_FALSE(pins.isBrakeOn || pins.isOrienting || pins.isLocked);
         EXPECT_EQ(pins.isIndexEnabled, value);
         const SpindleStatus &status = out.status.spindle[1];
         EXPECT_EQ(status.speed_cmd_rpm, 120);
@@ -329,12 +319,42 @@ TEST_F(SpindlesPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf) {
         EXPECT_EQ(status.revs, 17.5);
         EXPECT_EQ(status.direction, 1);
         EXPECT_TRUE(status.isOn);
+        EXPECT_FALSE(status.isBrakeOn);
         EXPECT_EQ(status.isAtSpeed, value);
-        EXPECT_EQ(status.isBrakeOn, value);
         EXPECT_EQ(status.isOverrideEnabled, value);
-        EXPECT_EQ(status.orient_state, Spindles::ORIENT_FAULTED);
-        EXPECT_EQ(status.orient_fault, 7);
+        EXPECT_EQ(status.orient_state, Spindles::ORIENT_NONE);
     }
+}
+
+TEST_F(SpindlesPart, PinsAndStatusShowAnOrientation) {
+    const auto show = [&] {
+        rpm();
+        Outputs out;
+        spindles.fill(in, true, out);
+        return std::pair{out.spindle[1], out.status.spindle[1]};
+    };
+    SpindleOrient orient;
+    orient.spindle = 1;
+    orient.angle_deg = 33;
+    orient.mode = 2;
+    spindles.take(orient, true);
+    const auto [turning, in_progress] = show();
+    EXPECT_TRUE(turning.isOrienting);
+    EXPECT_FALSE(turning.isLocked || turning.isBrakeOn);
+    EXPECT_EQ(turning.orient_angle, 33);
+    EXPECT_EQ(turning.orient_mode, 2);
+    EXPECT_EQ(in_progress.orient_state, Spindles::ORIENT_IN_PROGRESS);
+    in.spindle[1].isOriented = true;
+    const auto [locked, complete] = show();
+    EXPECT_FALSE(locked.isOrienting);
+    EXPECT_TRUE(locked.isLocked && locked.isBrakeOn && complete.isBrakeOn);
+    EXPECT_EQ(complete.orient_state, Spindles::ORIENT_COMPLETE);
+    in.spindle[1].orient_fault = 7;
+    spindles.take(orient, true);
+    const auto [faulted, status] = show();
+    EXPECT_FALSE(faulted.isOrienting || faulted.isLocked);
+    EXPECT_EQ(status.orient_state, Spindles::ORIENT_FAULTED);
+    EXPECT_EQ(status.orient_fault, 7);
 }
 
 }  // namespace
