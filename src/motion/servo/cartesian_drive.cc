@@ -13,7 +13,7 @@ void step_alignment(ControllerParts &parts, const Inputs &in) noexcept {
     const AlignmentStep result = parts.alignment.step(parts.joints, isWanted, parts.model.period_s());
     if (result == AlignmentStep::STOPPED) {
         parts.power.set_mode(Mode::FREE);  // each joint moves by itself
-        rest_at(parts.jogs, commanded(parts.joints).data(), parts.programmed_pose());
+        rest_at(parts.jogs, parts.joints.commanded().data(), parts.programmed_pose());
     }
 }
 
@@ -30,7 +30,7 @@ geometry::Pose add_offsets(ControllerParts &parts, const Inputs &in, const geome
 
 void command_pose(ControllerParts &parts, const geometry::Pose &pose) noexcept {
     const MachineModel &model = parts.model;
-    const PerJoint here = commanded(parts.joints);
+    const PerJoint here = parts.joints.commanded();
     PerJoint positions = here;
     if (!isAnswered(model.kinematics().inverse(pose, positions.data()))) [[unlikely]] {
         // The planner avoids such poses; if one comes, no valid command is possible.
@@ -47,7 +47,7 @@ void command_pose(ControllerParts &parts, const geometry::Pose &pose) noexcept {
     parts.position.follow_pose(pose, model.period_s());
     for (int j = 0; j < model.num_pose_joints(); ++j) {
         const auto n = static_cast<std::size_t>(j);
-        follow(parts.joints[j], positions[n], model.period_s());
+        parts.joints.follow(j, positions[n], model.period_s());
         parts.jogs.joint[n].planner.reset(positions[n]);
     }
 }

@@ -54,7 +54,7 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
             return CommandResult{};
         },
         [&](const OneOf<SetWatchdog, Heartbeat> auto &c) { return safety.take(c); },
-        [&](const OneOf<SetAmplifier, LoadCompensation> auto &c) { return take(parts.joints, c, isEnabled); },
+        [&](const OneOf<SetAmplifier, LoadCompensation> auto &c) { return parts.joints.take(c, isEnabled); },
         [&](const OneOf<Pause, Resume, StepOnce, SetMaxVelocity> auto &c) { return parts.holds.take(c); },
         [&](const SetReverse &c) {
             const bool isPathRecorded = parts.power.mode() == Mode::COORD && parts.retracing.hasPath();

@@ -7,7 +7,7 @@ namespace mw::motion {
 
 ExtraJointInputs extra_inputs(const ControllerParts &parts, const Inputs &in) noexcept {
     const FoldedLimits &limits = parts.model.limits();
-    return {in.joint, commanded(parts.joints), limits, limits.homed.joints & ~inactive_joints(parts.joints),
+    return {in.joint, parts.joints.commanded(), limits, limits.homed.joints & ~parts.joints.inactive(),
             parts.model.period_s()};
 }
 
@@ -16,7 +16,7 @@ void command_extra_joints(ControllerParts &parts, const Inputs &in) noexcept {
     for (int j = parts.extra.first(); j < parts.model.num_joints(); ++j) {
         const auto n = static_cast<std::size_t>(j);
         if (parts.extra.isCommanding(j)) {
-            follow(parts.joints[j], parts.extra.position(j), parts.model.period_s());
+            parts.joints.follow(j, parts.extra.position(j), parts.model.period_s());
             parts.jogs.joint[n].planner.reset(parts.extra.position(j));
         }
     }
@@ -31,7 +31,7 @@ void command_extra_joints(ControllerParts &parts, const Inputs &in) noexcept {
 
 void command_motors(ControllerParts &parts) noexcept {
     const bool isEnabled = parts.power.isEnabled();
-    for (std::uint32_t off = output(parts.joints, parts.model.settings(), isEnabled, parts.model.period_s());
+    for (std::uint32_t off = parts.joints.output(parts.model.settings(), isEnabled, parts.model.period_s());
          off != 0; off &= off - 1) {
         const int j = std::countr_zero(off);
         parts.jogs.at({true, j}).planner.reset(parts.joints[j].pos_fb);
@@ -39,7 +39,7 @@ void command_motors(ControllerParts &parts) noexcept {
     if (isEnabled) [[likely]] {
         return;
     }
-    parts.position.follow_joints(parts.model.kinematics(), commanded(parts.joints).data(),
+    parts.position.follow_joints(parts.model.kinematics(), parts.joints.commanded().data(),
                                  parts.position.isFbValid());
     const geometry::Pose pose = parts.programmed_pose();
     parts.executor.set_position(pose);

@@ -63,7 +63,7 @@ TravelRange path_range(const PathLink &link, const geometry::Pose &pose,
 void check_joint_limits(ControllerParts &parts) noexcept {
     const bool isPlanned = parts.model.map().kind != AxisMap::Kind::UNKNOWN;
     const Overrun overrun =
-        isPlanned || !parts.power.isReady() ? Overrun{} : find_overrun(parts.joints, parts.model.limits());
+        isPlanned || !parts.power.isReady() ? Overrun{} : parts.joints.find_overrun(parts.model.limits());
     if (overrun.joint >= 0) [[unlikely]] {
         parts.stop_category_1(overrun.isOutside ? FaultKind::JOINT_LEFT_RANGE : FaultKind::JOINT_TOO_FAST,
                               overrun.joint, overrun.use);

@@ -5,7 +5,7 @@ namespace mw::motion {
 
 std::uint32_t read_feedback(ControllerParts &parts, const Inputs &in) noexcept {
     parts.homing.read_pins();
-    const PerJoint measured = read_feedback(parts.joints, in);
+    const PerJoint measured = parts.joints.read_feedback(in);
     parts.position.read_feedback(parts.model.kinematics(), measured.data(),
                                  parts.model.limits().homed.areAll);
     return parts.spindles.read_feedback(in);

@@ -25,12 +25,12 @@ void FreeMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
         if ((locked & 1U << j) == 0) {
             step_joint(jog, limits.joints.velocity[n], parts.holds.jog_scale(), period_s);
         }
-        follow(parts.joints[j], jog.planner.position, period_s);
+        parts.joints.follow(j, jog.planner.position, period_s);
     }
     parts.offsets.step({in.axis_offset, limits, {}, false, period_s});
     const kinematics::Kinematics &kinematics = parts.model.kinematics();
     const bool isKnown = kinematics.kind() == kinematics::Kind::BOTH && parts.homing.isAllHomed();
-    parts.position.follow_joints(kinematics, commanded(parts.joints).data(), isKnown);
+    parts.position.follow_joints(kinematics, parts.joints.commanded().data(), isKnown);
 }
 
 bool FreeMode::isJogging(const ControllerParts &parts) const noexcept {

@@ -41,7 +41,7 @@ geometry::Pose home_pose(const Settings &settings) noexcept {
     parts.extra.hold();
     const bool isMoving = isAnythingMoving(parts) || !parts.extra.areAtRest() || parts.indexers.busy() != 0;
     const HomeConditions conditions{true, parts.power.mode(), in.isHomingInhibited, isMoving,
-                                    inactive_joints(parts.joints)};
+                                    parts.joints.inactive()};
     const homing::Failure why = parts.homing.begin_due(conditions);
     if (why != homing::Failure::NONE) {
         parts.raise(FaultKind::HOMING_FAILED, parts.homing.due_joint(), 0, static_cast<std::uint16_t>(why));
@@ -66,13 +66,13 @@ geometry::Pose home_pose(const Settings &settings) noexcept {
     }
     for (int j = 0; j < num_joints; ++j) {
         const homing::JointCommand &c = commands[j];
-        Joint &joint = parts.joints[j];
+        const Joint &joint = parts.joints[j];
         Jog &jog = parts.jogs.at({true, j});
         if (c.isShifting) {
-            shift(joint, c.shift);
+            parts.joints.shift(j, c.shift);
             renumber(jog, joint.pos_cmd, c.shift);
         } else if (c.isSettingZero) {
-            set_zero(joint, c.zero);
+            parts.joints.set_zero(j, c.zero);
             renumber(jog, joint.pos_cmd, joint.pos_cmd - jog.planner.position);
         }
         home_joint(jog, c, limits.joint_jog[static_cast<std::size_t>(j)]);
@@ -101,7 +101,7 @@ void step_homing(ControllerParts &parts, const Inputs &in) noexcept {
     if (model.limits().homed.joints != homing.homed_joints() || isOtherMap) [[unlikely]] {
         if (parts.power.mode() == Mode::FREE && homing.isAllHomed()) {
             // In other modes the pose commands the joints.
-            parts.position.find_again(model.kinematics(), commanded(parts.joints).data(),
+            parts.position.find_again(model.kinematics(), parts.joints.commanded().data(),
                                       home_pose(model.settings()));
         }
         parts.publish_limits();

@@ -25,7 +25,7 @@ bool isBesideIndexer(const ControllerParts &parts, const JogTarget &target) noex
 /// Range of a jog of `target`.
 JogRange range_of(const ControllerParts &parts, const JogTarget &target) noexcept {
     JogRange range =
-        jog_range(parts.model.limits(), parts.model.map(), target, commanded(parts.joints).data());
+        jog_range(parts.model.limits(), parts.model.map(), target, parts.joints.commanded().data());
     if (!target.isJoint) {
         parts.offsets.narrow(range, target.index);
     }

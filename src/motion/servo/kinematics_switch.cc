@@ -15,7 +15,7 @@ namespace {
     if (!isSwitched) {
         parts.raise(FaultKind::NO_KINEMATICS_TYPE, -1, parts.types.wanted());
     } else if (parts.homing.isAllHomed()) {
-        const PerJoint joints = commanded(parts.joints);
+        const PerJoint joints = parts.joints.commanded();
         const bool isKnown = isAnswered(kinematics.forward(joints.data(), pose)) &&
                              isWithinOneStep(kinematics, pose, joints, parts.model.joint_step_limit());
         if (!isKnown) {
@@ -30,7 +30,7 @@ namespace {
     }
     parts.position.set_cmd(pose);
     parts.restart_path(pose);
-    rest_at(parts.jogs, commanded(parts.joints).data(), pose);
+    rest_at(parts.jogs, parts.joints.commanded().data(), pose);
     parts.publish_joint_start();
 }
 

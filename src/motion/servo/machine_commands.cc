@@ -37,7 +37,7 @@ CommandResult take(ControllerParts &parts, const Enable &, const Inputs &in) noe
     if (parts.power.isEnabled()) {
         return {parts.power.isStopping() ? Reason::MOVING : Reason::NONE};
     }
-    const CommandResult start = check_start(parts.joints, in, parts.jogs.areLimitsOverridden);
+    const CommandResult start = parts.joints.check_start(in, parts.jogs.areLimitsOverridden);
     if (start.reason != Reason::NONE) {
         return start;
     }
@@ -48,9 +48,9 @@ CommandResult take(ControllerParts &parts, const Enable &, const Inputs &in) noe
         parts.power.set_mode(Mode::FREE);  // each joint moves by itself
     }
     parts.power.switch_on();
-    switch_on(parts.joints);
+    parts.joints.switch_on();
     parts.offsets.start_at_zero(in);
-    start_at(parts.jogs, commanded(parts.joints).data(), parts.position.cmd(), in);
+    start_at(parts.jogs, parts.joints.commanded().data(), parts.position.cmd(), in);
     parts.indexers.switch_on(unlocked_pins(in));
     parts.extra.switch_on(extra_inputs(parts, in));
     parts.coord_error = false;
@@ -76,7 +76,7 @@ CommandResult take(ControllerParts &parts, const SetMode &command) noexcept {
     const geometry::Pose pose = parts.programmed_pose();
     parts.restart_path(pose);
     parts.executor.hold(false);
-    rest_at(parts.jogs, commanded(parts.joints).data(), pose);
+    rest_at(parts.jogs, parts.joints.commanded().data(), pose);
     parts.holds.release();
     parts.power.set_mode(mode);
     parts.publish_joint_start();
@@ -99,7 +99,7 @@ CommandResult take(ControllerParts &parts, const SetParameter &command) noexcept
 
 CommandResult take(ControllerParts &parts, const SetNumJoints &command, const Inputs &in) noexcept {
     const int count = command.count;
-    const int loaded = parts.joints.loaded;
+    const int loaded = parts.joints.loaded();
     const kinematics::IdentityMap *identity = parts.model.kinematics().identity();
     const int least = identity != nullptr ? std::min(identity->num_joints, loaded) : 1;
     const int needed = parts.extra.count() > 0 ? loaded : least;  // extra joints are the last ones
@@ -116,7 +116,7 @@ CommandResult take(ControllerParts &parts, const SetNumJoints &command, const In
         parts.homing.unhome(j);
     }
     parts.use_joints(count);
-    read_feedback(parts.joints, in);
+    parts.joints.read_feedback(in);
     parts.leave_unknown_pose();
     return {};
 }
@@ -124,18 +124,18 @@ CommandResult take(ControllerParts &parts, const SetNumJoints &command, const In
 CommandResult take(ControllerParts &parts, const SetJointActive &command) noexcept {
     const bool areAlone = !parts.power.isEnabled() || parts.power.mode() == Mode::FREE;
     const CommandResult result =
-        take(parts.joints, command, {isAnythingMoving(parts), parts.homing.isUnderWay(), areAlone});
+        parts.joints.take(command, {isAnythingMoving(parts), parts.homing.isUnderWay(), areAlone});
     if (areAlone) {  // the pose is that of all joints from here, also for the next command
         const kinematics::Kinematics &kinematics = parts.model.kinematics();
         const bool isKnown = kinematics.kind() == kinematics::Kind::BOTH && parts.homing.isAllHomed();
-        parts.position.follow_joints(kinematics, commanded(parts.joints).data(), isKnown);
+        parts.position.follow_joints(kinematics, parts.joints.commanded().data(), isKnown);
     }
     return result;
 }
 
 CommandResult take(ControllerParts &parts, const Home &command, const Inputs &in) noexcept {
     const HomeConditions conditions{parts.power.isReady(), parts.power.mode(), in.isHomingInhibited, false,
-                                    inactive_joints(parts.joints)};
+                                    parts.joints.inactive()};
     const CommandResult result = parts.homing.take(command, conditions);
     if (result.reason == Reason::NONE) {
         stop(parts.jogs);

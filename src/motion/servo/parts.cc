@@ -8,16 +8,15 @@ namespace mw::motion {
 
 ControllerParts::ControllerParts(const ControllerConfig &config, const kinematics::Kinematics &kinematics,
                                  Channels &channels_used, PathLink &link_used) noexcept
-    : channels(&channels_used), link(&link_used), model(config, kinematics),
+    : channels(&channels_used), link(&link_used), model(config, kinematics), joints(config.num_joints),
       homing(config.period_s, config.homing), spindles(config.num_spindles),
       outputs(config.num_dio, config.num_aio), executor(link_used.store, config.period_s) {
-    joints.loaded = config.num_joints;
     use_joints(config.num_joints);
     jogs.axes = model.limits().axes;  // there are never more joints than now
     const kinematics::IdentityMap *identity = kinematics.identity();
     const int count = config.num_pose_joints();
     for (int j = identity != nullptr ? identity->num_joints : count; j < count; ++j) {
-        joints[j].isActive = false;  // drives nothing until it is activated
+        joints.deactivate(j);
     }
 }
 
@@ -32,7 +31,7 @@ ControllerParts::ControllerParts(const ControllerParts &other, Channels &channel
 void ControllerParts::use_joints(int count) noexcept {
     const kinematics::IdentityMap *identity = model.kinematics().identity();
     model.use_joints(count);
-    joints.count = count;
+    joints.use_joints(count);
     jogs.num_joints = count;
     extra.use_joints(count - model.num_extra_joints(), model.num_extra_joints());
     const int num_to_home =
@@ -86,7 +85,7 @@ void ControllerParts::switch_off() noexcept {
     alignment.cancel();
     power.switch_off();
     holds.release();
-    motion::switch_off(joints);
+    joints.switch_off();
     indexers.switch_off();
     forget_sources(jogs);
     homing.switch_off(model.settings());
@@ -113,11 +112,11 @@ CommandResult ControllerParts::align_joints() noexcept {
     const kinematics::Kind kind = kinematics.kind();
     const bool isPoseKnown =
         areJointsAxes || kind != kinematics::Kind::BOTH ||
-        isWithinOneStep(kinematics, position.cmd(), commanded(joints), model.joint_step_limit());
+        isWithinOneStep(kinematics, position.cmd(), joints.commanded(), model.joint_step_limit());
     if (!isPoseKnown) {
         return {Reason::POSE_UNKNOWN};
     }
-    PerJoint targets = commanded(joints);
+    PerJoint targets = joints.commanded();
     const bool hasInverse = kind == kinematics::Kind::IDENTITY || kind == kinematics::Kind::BOTH;
     if (!hasInverse || !isAnswered(kinematics.inverse(position.cmd(), targets.data()))) {
         return {};
@@ -140,7 +139,7 @@ void ControllerParts::publish_joint_start() noexcept {
     if (model.map().areJointsAxes()) {
         return;
     }
-    joint_start.set(commanded(joints));
+    joint_start.set(joints.commanded());
     publish_limits();
 }
 

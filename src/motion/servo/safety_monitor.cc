@@ -27,7 +27,7 @@ void check_joints(ControllerParts &parts, const Inputs &in) noexcept {
     Joints &joints = parts.joints;
     const JointCheck how = joint_check(parts, in);
     for (int j = 0; parts.power.isEnabled(); ++j) {
-        switch (find_fault(joints, j, parts.model.settings(), how)) {
+        switch (joints.find_fault(j, parts.model.settings(), how)) {
         case JointFault::NONE: return;
         case JointFault::FEEDBACK_LOST: parts.stop_category_0(FaultKind::FEEDBACK_LOST, j); break;
         case JointFault::AMP_FAULT: parts.stop_category_0(FaultKind::AMP_FAULT, j); break;

@@ -39,7 +39,7 @@ void trace(Channels &channels, const Status &s, const Joints &joints, TraceSampl
     sample.line = s.source.line;
     sample.epoch = s.epoch;
     sample.carte_pos_cmd = s.carte_pos_cmd;
-    sample.joint_pos_cmd = commanded(joints);
+    sample.joint_pos_cmd = joints.commanded();
     bool isAllOn = s.isEnabled;
     for (int j = 0; j < s.num_joints; ++j) {
         isAllOn = isAllOn && (joints[j].isAmpWanted || !joints[j].isActive);
@@ -187,8 +187,8 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
     const geometry::Pose programmed = parts.programmed_pose();
     fill_path(parts, programmed, s);
     fill_heading(parts.link->store, parts.executor.output().move, programmed, out);
-    fill(parts.joints,
-         {parts.power.isEnabled(), parts.jogs.areLimitsOverridden, parts.model.limits().homed.joints}, out);
+    parts.joints.fill(
+        {parts.power.isEnabled(), parts.jogs.areLimitsOverridden, parts.model.limits().homed.joints}, out);
     fill(parts.jogs, parts.power.mode(), programmed, out);
     if (!parts.offsets.isEmpty() || !out.areOffsetsQuiet) [[unlikely]] {
         parts.offsets.fill(out);
@@ -198,7 +198,7 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
     parts.homing.fill(out);
     parts.indexers.fill(out);
     parts.spindles.fill(in, parts.power.isEnabled(), out);
-    for (int j = parts.model.num_joints(); j < parts.joints.loaded; ++j) {
+    for (int j = parts.model.num_joints(); j < parts.joints.loaded(); ++j) {
         fill_unused(in.joint[static_cast<std::size_t>(j)], j, out);
     }
     out.isCoordError = parts.coord_error;

@@ -22,7 +22,7 @@ std::uint32_t locked_axes(const FoldedLimits &limits, std::uint32_t locked) noex
 /// Where joints are not axes, the joints limit what the axes do together.
 void step_axes_together(ControllerParts &parts, std::uint32_t locked) noexcept {
     const MachineModel &model = parts.model;
-    PerJoint joint_positions = commanded(parts.joints);
+    PerJoint joint_positions = parts.joints.commanded();
     trajectory::JointLimits joint_limits = model.limits().path_joints;
     parts.offsets.remove_from(joint_positions, joint_limits);
     const TeleopMachine machine{model.kinematics(),

@@ -19,7 +19,7 @@ bool isMisplaced(const Joint &joint, double target, double tolerance) noexcept {
 }  // namespace
 
 int find_misaligned_joint(const Joints &joints, const PerJoint &targets, const Settings &settings) noexcept {
-    for (int j = 0; j < joints.count; ++j) {
+    for (int j = 0; j < joints.count(); ++j) {
         const double tolerance = std::max(settings.get(Parameter::JOINT_MIN_FERROR, j), ROUNDING);
         if (isMisplaced(joints[j], targets[static_cast<std::size_t>(j)], tolerance)) {
             return j;
@@ -31,7 +31,7 @@ int find_misaligned_joint(const Joints &joints, const PerJoint &targets, const S
 void GantryAlignment::begin(const Joints &joints, const PerJoint &targets,
                             const FoldedLimits &limits) noexcept {
     cancel();
-    for (int j = 0; j < joints.count; ++j) {
+    for (int j = 0; j < joints.count(); ++j) {
         const auto n = static_cast<std::size_t>(j);
         if (isMisplaced(joints[j], targets[n], ROUNDING)) {
             trajectory::AxisMotion &p = planner_[n];
@@ -68,7 +68,7 @@ AlignmentStep GantryAlignment::step(Joints &joints, bool isMotionWanted, double 
         const int j = std::countr_zero(left);
         trajectory::AxisMotion &p = planner_[static_cast<std::size_t>(j)];
         p.step(period_s);
-        follow(joints[j], p.position, period_s);
+        joints.follow(j, p.position, period_s);
         joints_ &= p.isAtRest() ? ~(1U << j) : ~0U;
     }
     const bool hasStopped = stopping_ && !isMisaligned();

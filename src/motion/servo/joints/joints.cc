@@ -11,12 +11,8 @@ namespace {
 /// Rounding of position differences between samples.
 constexpr double STEP_ROUNDING = 1e-6;
 
-std::size_t at(int i) noexcept {
+std::size_t index(int i) noexcept {
     return static_cast<std::size_t>(i);
-}
-
-bool hasJoint(const Joints &joints, int j) noexcept {
-    return j >= 0 && j < joints.count;
 }
 
 /// Off: the command follows the feedback, so that switching on causes no motion.
@@ -26,7 +22,7 @@ void follow_feedback(Joint &s) noexcept {
     s.vel_cmd = 0;
     s.acc_cmd = 0;
     s.ferror = 0;
-    follow(s.correction, s.pos_fb);
+    motion::follow(s.correction, s.pos_fb);
     s.motor_pos_cmd = s.motor_pos_fb;
 }
 
@@ -68,23 +64,22 @@ JointFault check(Joint &s, const Settings &settings, int j, const JointCheck &ho
 
 }  // namespace
 
-CommandResult take(Joints &joints, const SetAmplifier &command, bool isEnabled) noexcept {
-    if (!hasJoint(joints, command.joint)) {
+CommandResult Joints::take(const SetAmplifier &command, bool isEnabled) noexcept {
+    if (!hasJoint(command.joint)) {
         return result_of(command.joint, Reason::NO_SUCH_JOINT);
     }
     if (command.isOn && !isEnabled) {
         return result_of(command.joint, Reason::NOT_ENABLED);
     }
-    joints[command.joint].isAmpWanted = command.isOn;
+    at(command.joint).isAmpWanted = command.isOn;
     return result_of(command.joint, Reason::NONE);
 }
 
-/// While the machine is off: nothing moves by what is loaded.
-CommandResult take(Joints &joints, const LoadCompensation &command, bool isEnabled) noexcept {
-    if (!hasJoint(joints, command.joint)) {
+CommandResult Joints::take(const LoadCompensation &command, bool isEnabled) noexcept {
+    if (!hasJoint(command.joint)) {
         return result_of(command.joint, Reason::NO_SUCH_JOINT);
     }
-    Joint &joint = joints[command.joint];
+    Joint &joint = at(command.joint);
     if (isEnabled) {
         joint.correction.table.filled = 0;
         return result_of(command.joint, Reason::SWITCHED_ON);
@@ -92,15 +87,14 @@ CommandResult take(Joints &joints, const LoadCompensation &command, bool isEnabl
     if (command.index == 0) {
         joint.motor_offset += clear(joint.correction);
     }
-    return result_of(command.joint, take(joint.correction.table, command));
+    return result_of(command.joint, motion::take(joint.correction.table, command));
 }
 
-CommandResult take(Joints &joints, const SetJointActive &command,
-                   const ActivationConditions &conditions) noexcept {
-    if (!hasJoint(joints, command.joint)) {
+CommandResult Joints::take(const SetJointActive &command, const ActivationConditions &conditions) noexcept {
+    if (!hasJoint(command.joint)) {
         return result_of(command.joint, Reason::NO_SUCH_JOINT);
     }
-    Joint &joint = joints[command.joint];
+    Joint &joint = at(command.joint);
     if (conditions.isHoming) {
         return result_of(command.joint, Reason::HOMING);
     }
@@ -115,26 +109,26 @@ CommandResult take(Joints &joints, const SetJointActive &command,
     return result_of(command.joint, Reason::NONE);
 }
 
-CommandResult check_start(const Joints &joints, const Inputs &in, bool areLimitsOverridden) noexcept {
-    for (int j = 0; j < joints.count; ++j) {
-        const JointInputs &pins = in.joint[at(j)];
-        if (joints[j].isActive && pins.isAmpFaulted) {
+CommandResult Joints::check_start(const Inputs &in, bool areLimitsOverridden) const noexcept {
+    for (int j = 0; j < count_; ++j) {
+        const JointInputs &pins = in.joint[index(j)];
+        if ((*this)[j].isActive && pins.isAmpFaulted) {
             return result_of(j, Reason::AMP_FAULT);
         }
-        if (joints[j].isActive && !std::isfinite(pins.motor_pos_fb)) {
+        if ((*this)[j].isActive && !std::isfinite(pins.motor_pos_fb)) {
             return result_of(j, Reason::NO_FEEDBACK);
         }
         const bool isOnLimit = (pins.isPosLimitClosed || pins.isNegLimitClosed) && !areLimitsOverridden;
-        if (joints[j].isActive && isOnLimit) {
+        if ((*this)[j].isActive && isOnLimit) {
             return result_of(j, Reason::ON_HARD_LIMIT);
         }
     }
     return {};
 }
 
-void switch_on(Joints &joints) noexcept {
-    for (int j = 0; j < joints.count; ++j) {
-        Joint &s = joints[j];
+void Joints::switch_on() noexcept {
+    for (int j = 0; j < count_; ++j) {
+        Joint &s = at(j);
         s.isAmpWanted = s.isActive;
         s.isFaulted = false;
         s.isFerrorTripped = false;
@@ -142,51 +136,51 @@ void switch_on(Joints &joints) noexcept {
     }
 }
 
-void switch_off(Joints &joints) noexcept {
-    for (int j = 0; j < joints.count; ++j) {
-        joints[j].isAmpWanted = false;
+void Joints::switch_off() noexcept {
+    for (int j = 0; j < count_; ++j) {
+        at(j).isAmpWanted = false;
     }
 }
 
-PerJoint read_feedback(Joints &joints, const Inputs &in) noexcept {
+PerJoint Joints::read_feedback(const Inputs &in) noexcept {
     PerJoint measured{};
-    for (int j = 0; j < joints.count; ++j) {
-        Joint &s = joints[j];
-        const JointInputs &pins = in.joint[at(j)];
+    for (int j = 0; j < count_; ++j) {
+        Joint &s = at(j);
+        const JointInputs &pins = in.joint[index(j)];
         s.isFeedbackLost = !std::isfinite(pins.motor_pos_fb);
         s.motor_pos_fb = s.isFeedbackLost ? s.motor_pos_fb : pins.motor_pos_fb;
         s.pos_fb = s.motor_pos_fb - s.correction.position - s.motor_offset;
         s.isOnPosHardLimit = pins.isPosLimitClosed;
         s.isOnNegHardLimit = pins.isNegLimitClosed;
         s.isFaulted = pins.isAmpFaulted;
-        measured[at(j)] = s.pos_fb;
+        measured[index(j)] = s.pos_fb;
     }
     return measured;
 }
 
-PerJoint commanded(const Joints &joints) noexcept {
+PerJoint Joints::commanded() const noexcept {
     PerJoint out{};
-    for (int j = 0; j < joints.count; ++j) {
-        out[at(j)] = joints[j].pos_cmd;
+    for (int j = 0; j < count_; ++j) {
+        out[index(j)] = (*this)[j].pos_cmd;
     }
     return out;
 }
 
-std::uint32_t inactive_joints(const Joints &joints) noexcept {
+std::uint32_t Joints::inactive() const noexcept {
     std::uint32_t mask = 0;
-    for (int j = 0; j < joints.count; ++j) {
-        mask |= joints[j].isActive ? 0U : 1U << j;
+    for (int j = 0; j < count_; ++j) {
+        mask |= (*this)[j].isActive ? 0U : 1U << j;
     }
     return mask;
 }
 
-JointFault find_fault(Joints &joints, int &joint, const Settings &settings, const JointCheck &how) noexcept {
+JointFault Joints::find_fault(int &joint, const Settings &settings, const JointCheck &how) noexcept {
     const JointCheck own = how;
-    const int count = joints.count;
+    const int count = count_;
     int j = joint;
     JointFault fault = JointFault::NONE;
     for (; j < count; ++j) {
-        fault = joints[j].isActive ? check(joints[j], settings, j, own) : JointFault::NONE;
+        fault = at(j).isActive ? check(at(j), settings, j, own) : JointFault::NONE;
         if (fault != JointFault::NONE) [[unlikely]] {
             break;
         }
@@ -195,14 +189,16 @@ JointFault find_fault(Joints &joints, int &joint, const Settings &settings, cons
     return fault;
 }
 
-void shift(Joint &joint, double shift) noexcept {
+void Joints::shift(int j, double shift) noexcept {
+    Joint &joint = at(j);
     joint.pos_cmd += shift;
     joint.motor_offset -= shift;
     joint.motor_offset -= renumber(joint.correction, joint.pos_cmd);
     joint.pos_fb = joint.motor_pos_fb - joint.correction.position - joint.motor_offset;
 }
 
-void set_zero(Joint &joint, double zero) noexcept {
+void Joints::set_zero(int j, double zero) noexcept {
+    Joint &joint = at(j);
     Correction &correction = joint.correction;
     renumber(correction, zero);
     joint.motor_offset = -zero - (correction.table.count > 0 ? correction.position : 0.0);
@@ -212,10 +208,10 @@ void set_zero(Joint &joint, double zero) noexcept {
     correction.extreme = joint.pos_cmd;
 }
 
-std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, double period_s) noexcept {
+std::uint32_t Joints::output(const Settings &settings, bool isEnabled, double period_s) noexcept {
     std::uint32_t off = 0;
-    for (int j = 0; j < joints.count; ++j) {
-        Joint &s = joints[j];
+    for (int j = 0; j < count_; ++j) {
+        Joint &s = at(j);
         if (!isEnabled || (!s.isActive && !s.isAmpWanted)) [[unlikely]] {
             follow_feedback(s);
             off |= 1U << j;
@@ -228,20 +224,20 @@ std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled, d
         if (isIdle(s.correction, settings.get(Parameter::JOINT_BACKLASH, j))) [[likely]] {
             follow_idle(s.correction, s.pos_cmd);
         } else {
-            step(s.correction, settings, j, s.pos_cmd, period_s);
+            motion::step(s.correction, settings, j, s.pos_cmd, period_s);
         }
         s.motor_pos_cmd = s.pos_cmd + s.correction.position + s.motor_offset;
     }
     return off;
 }
 
-Overrun find_overrun(const Joints &joints, const FoldedLimits &limits) noexcept {
-    for (int j = 0; j < joints.count; ++j) {
-        const Joint &s = joints[j];
-        const double v = std::abs(s.vel_cmd) / limits.joints.velocity[at(j)];
-        const double a = std::abs(s.acc_cmd) / limits.joints.acceleration[at(j)];
-        const bool isOut = (s.pos_cmd < limits.joints.low[at(j)] - STEP_ROUNDING && s.vel_cmd < 0) ||
-                           (s.pos_cmd > limits.joints.high[at(j)] + STEP_ROUNDING && s.vel_cmd > 0);
+Overrun Joints::find_overrun(const FoldedLimits &limits) const noexcept {
+    for (int j = 0; j < count_; ++j) {
+        const Joint &s = (*this)[j];
+        const double v = std::abs(s.vel_cmd) / limits.joints.velocity[index(j)];
+        const double a = std::abs(s.acc_cmd) / limits.joints.acceleration[index(j)];
+        const bool isOut = (s.pos_cmd < limits.joints.low[index(j)] - STEP_ROUNDING && s.vel_cmd < 0) ||
+                           (s.pos_cmd > limits.joints.high[index(j)] + STEP_ROUNDING && s.vel_cmd > 0);
         if (isOut || std::max(v, a) > 1.0 + STEP_ROUNDING) {
             return {j, isOut, std::max(v, a)};
         }
@@ -249,40 +245,45 @@ Overrun find_overrun(const Joints &joints, const FoldedLimits &limits) noexcept 
     return {};
 }
 
-void fill(const Joints &joints, const JointSituation &situation, Outputs &out) noexcept {
+void fill(const Joint &joint, const JointSituation &situation, JointStatus &status,
+          JointOutputs &outputs) noexcept {
+    const bool isHomed = situation.isHomed;
+    status.pos_cmd = joint.pos_cmd;
+    status.pos_fb = joint.pos_fb;
+    status.vel_cmd = joint.vel_cmd;
+    status.motor_pos_cmd = joint.motor_pos_cmd;
+    status.motor_pos_fb = joint.motor_pos_fb;
+    status.ferror = joint.ferror;
+    status.ferror_highmark = joint.ferror_highmark;
+    status.isActive = joint.isActive;
+    status.isEnabled = situation.isEnabled && joint.isAmpWanted;
+    status.isHomed = isHomed;
+    status.isFaulted = joint.isFaulted;
+    status.isOnPosSoftLimit = isHomed && joint.pos_cmd >= status.max_limit;
+    status.isOnNegSoftLimit = isHomed && joint.pos_cmd <= status.min_limit;
+    status.isOnPosHardLimit = joint.isOnPosHardLimit;
+    status.isOnNegHardLimit = joint.isOnNegHardLimit;
+    status.isFerrorTripped = joint.isFerrorTripped;
+    status.isOverridingLimits = situation.areLimitsOverridden;
+    outputs.motor_pos_cmd = joint.motor_pos_cmd;
+    outputs.coarse_pos = joint.coarse_pos;
+    outputs.acc_cmd = joint.acc_cmd;
+    outputs.backlash_raw = joint.correction.raw;
+    outputs.backlash_filtered = joint.correction.position;
+    outputs.backlash_velocity = joint.correction.velocity;
+    outputs.motor_offset = joint.motor_offset;
+    outputs.ferror_limit = joint.ferror_limit;
+    outputs.isAmpEnabled = status.isEnabled;
+}
+
+void Joints::fill(const JointsSituation &situation, Outputs &out) const noexcept {
     bool isOnSoftLimit = false;
-    for (int j = 0; j < joints.count; ++j) {
-        const Joint &from = joints[j];
-        JointStatus &to = out.status.joint[at(j)];
+    for (int j = 0; j < count_; ++j) {
+        JointStatus &status = out.status.joint[index(j)];
         const bool isHomed = (situation.homed >> j & 1U) != 0;
-        to.pos_cmd = from.pos_cmd;
-        to.pos_fb = from.pos_fb;
-        to.vel_cmd = from.vel_cmd;
-        to.motor_pos_cmd = from.motor_pos_cmd;
-        to.motor_pos_fb = from.motor_pos_fb;
-        to.ferror = from.ferror;
-        to.ferror_highmark = from.ferror_highmark;
-        to.isActive = from.isActive;
-        to.isEnabled = situation.isEnabled && from.isAmpWanted;
-        to.isHomed = isHomed;
-        to.isFaulted = from.isFaulted;
-        to.isOnPosSoftLimit = isHomed && from.pos_cmd >= to.max_limit;
-        to.isOnNegSoftLimit = isHomed && from.pos_cmd <= to.min_limit;
-        to.isOnPosHardLimit = from.isOnPosHardLimit;
-        to.isOnNegHardLimit = from.isOnNegHardLimit;
-        to.isFerrorTripped = from.isFerrorTripped;
-        to.isOverridingLimits = situation.areLimitsOverridden;
-        JointOutputs &o = out.joint[at(j)];
-        o.motor_pos_cmd = from.motor_pos_cmd;
-        o.coarse_pos = from.coarse_pos;
-        o.acc_cmd = from.acc_cmd;
-        o.backlash_raw = from.correction.raw;
-        o.backlash_filtered = from.correction.position;
-        o.backlash_velocity = from.correction.velocity;
-        o.motor_offset = from.motor_offset;
-        o.ferror_limit = from.ferror_limit;
-        o.isAmpEnabled = to.isEnabled;
-        isOnSoftLimit = isOnSoftLimit || to.isOnPosSoftLimit || to.isOnNegSoftLimit;
+        motion::fill((*this)[j], {situation.isEnabled, situation.areLimitsOverridden, isHomed}, status,
+                     out.joint[index(j)]);
+        isOnSoftLimit = isOnSoftLimit || status.isOnPosSoftLimit || status.isOnNegSoftLimit;
     }
     out.isOnSoftLimit = isOnSoftLimit;
 }

@@ -31,36 +31,10 @@ struct Joint {
 /// A value of each joint; 0 for joints that the machine does not have.
 using PerJoint = std::array<double, MAX_JOINTS>;
 
-struct Joints {
-    int count = 0;
-    int loaded = 0;  ///< number of joints that may be used
-    std::array<Joint, MAX_JOINTS> joint;
-
-    Joint &operator[](int j) noexcept { return joint[static_cast<std::size_t>(j)]; }
-    const Joint &operator[](int j) const noexcept { return joint[static_cast<std::size_t>(j)]; }
-};
-
-CommandResult take(Joints &joints, const SetAmplifier &command, bool isEnabled) noexcept;
-CommandResult take(Joints &joints, const LoadCompensation &command, bool isEnabled) noexcept;
 struct ActivationConditions {
     bool isMoving = false, isHoming = false;
     bool areJointsAlone = true;  ///< off, or in free mode: no pose commands the joints
 };
-CommandResult take(Joints &joints, const SetJointActive &command,
-                   const ActivationConditions &conditions) noexcept;
-
-/// Reason why the machine may not be switched on now, NONE when it may.
-CommandResult check_start(const Joints &joints, const Inputs &in, bool areLimitsOverridden) noexcept;
-/// Switched on: the command is taken from the feedback.
-void switch_on(Joints &joints) noexcept;
-void switch_off(Joints &joints) noexcept;
-
-/// Returns the measured positions.
-[[gnu::hot]] PerJoint read_feedback(Joints &joints, const Inputs &in) noexcept;
-PerJoint commanded(const Joints &joints) noexcept;
-/// Bit per inactive joint.
-std::uint32_t inactive_joints(const Joints &joints) noexcept;
-
 enum class JointFault : std::uint8_t { NONE, FEEDBACK_LOST, AMP_FAULT, FOLLOWING_ERROR, HARD_LIMIT };
 struct JointCheck {
     /// Bit per joint whose encoder is reset now: command and feedback have different zeros.
@@ -68,10 +42,6 @@ struct JointCheck {
     std::uint32_t limits_ignored = 0;    ///< bit per joint
     std::uint32_t feedback_ignored = 0;  ///< the same
 };
-/// Following error, amplifier and limit switches of the active joints from `joint` on, up to the first fault;
-/// `joint` is set to its joint.
-JointFault find_fault(Joints &joints, int &joint, const Settings &settings, const JointCheck &how) noexcept;
-
 /// Commands the joint to `position` at the end of this cycle; inactive joints get no command.
 inline void follow(Joint &joint, double position, double period_s) noexcept {
     if (!joint.isActive) {
@@ -84,29 +54,82 @@ inline void follow(Joint &joint, double position, double period_s) noexcept {
     joint.coarse_pos = position;
 }
 
-/// Homing has found the zero: positions change by `shift`, the motor stays.
-void shift(Joint &joint, double shift) noexcept;
-/// The encoder has just been reset: motor position 0 is joint position `zero`.
-void set_zero(Joint &joint, double zero) noexcept;
-
-/// Motor positions: with corrections and offset while on, the feedback while off. Returns a bit per joint
-/// that is off.
-[[gnu::hot]] std::uint32_t output(Joints &joints, const Settings &settings, bool isEnabled,
-                                  double period_s) noexcept;
-
 /// The joint that exceeds its limits or leaves its soft limits, -1: none.
 struct Overrun {
     int joint = -1;
     bool isOutside = false;
     double use = 0;  ///< speed or acceleration over the limit
 };
-Overrun find_overrun(const Joints &joints, const FoldedLimits &limits) noexcept;
 
 struct JointSituation {
     bool isEnabled = false, areLimitsOverridden = false;
-    std::uint32_t homed = 0;
+    bool isHomed = false;
 };
-/// The limits are already in `out`.
-void fill(const Joints &joints, const JointSituation &situation, Outputs &out) noexcept;
+/// The same of all joints.
+struct JointsSituation {
+    bool isEnabled = false, areLimitsOverridden = false;
+    std::uint32_t homed = 0;  ///< bit per joint
+};
+/// Pins and status of a joint; its limits are already in `status`.
+void fill(const Joint &joint, const JointSituation &situation, JointStatus &status,
+          JointOutputs &outputs) noexcept;
+
+/// The joints of the machine: those in use are the first ones of those that are loaded.
+class Joints {
+  public:
+    explicit Joints(int loaded) noexcept : loaded_(loaded) {}
+
+    void use_joints(int count) noexcept { count_ = count; }
+    /// In use.
+    int count() const noexcept { return count_; }
+    /// Number of joints that may be used.
+    int loaded() const noexcept { return loaded_; }
+    const Joint &operator[](int j) const noexcept { return joint_[static_cast<std::size_t>(j)]; }
+    /// Commanded positions.
+    PerJoint commanded() const noexcept;
+    /// Bit per inactive joint.
+    std::uint32_t inactive() const noexcept;
+
+    CommandResult take(const SetAmplifier &command, bool isEnabled) noexcept;
+    /// While the machine is off: nothing moves by what is loaded.
+    CommandResult take(const LoadCompensation &command, bool isEnabled) noexcept;
+    CommandResult take(const SetJointActive &command, const ActivationConditions &conditions) noexcept;
+    /// The joint drives nothing until it is activated.
+    void deactivate(int j) noexcept { at(j).isActive = false; }
+    /// Reason why the machine may not be switched on now, NONE when it may.
+    CommandResult check_start(const Inputs &in, bool areLimitsOverridden) const noexcept;
+    /// Switched on: the command is taken from the feedback.
+    void switch_on() noexcept;
+    void switch_off() noexcept;
+
+    /// Returns the measured positions.
+    [[gnu::hot]] PerJoint read_feedback(const Inputs &in) noexcept;
+    /// Following error, amplifier and limit switches of the active joints from `joint` on, up to the first
+    /// fault; `joint` is set to its joint.
+    JointFault find_fault(int &joint, const Settings &settings, const JointCheck &how) noexcept;
+    Overrun find_overrun(const FoldedLimits &limits) const noexcept;
+
+    /// Commands joint j to `position` at the end of this cycle; inactive joints get no command.
+    void follow(int j, double position, double period_s) noexcept {
+        motion::follow(at(j), position, period_s);
+    }
+    /// Homing has found the zero: positions change by `shift`, the motor stays.
+    void shift(int j, double shift) noexcept;
+    /// The encoder has just been reset: motor position 0 is joint position `zero`.
+    void set_zero(int j, double zero) noexcept;
+    /// Motor positions: with corrections and offset while on, the feedback while off. Returns a bit per joint
+    /// that is off.
+    [[gnu::hot]] std::uint32_t output(const Settings &settings, bool isEnabled, double period_s) noexcept;
+
+    void fill(const JointsSituation &situation, Outputs &out) const noexcept;
+
+  private:
+    bool hasJoint(int j) const noexcept { return j >= 0 && j < count_; }
+    Joint &at(int j) noexcept { return joint_[static_cast<std::size_t>(j)]; }
+
+    int count_ = 0;
+    int loaded_;
+    std::array<Joint, MAX_JOINTS> joint_;
+};
 
 }  // namespace mw::motion
