@@ -9,11 +9,11 @@ void step_alignment(ControllerParts &parts, const Inputs &in) noexcept {
     check_probe(parts, in);
     parts.executor.step(parts.cycle);
     const bool isWanted = parts.link->queue_depth.load(std::memory_order_relaxed) != 0 ||
-                          !areAxesAtRest(parts.jogs) || parts.offsets.isMotionRequested(in.axis_offset);
+                          !parts.jogs.areAxesAtRest() || parts.offsets.isMotionRequested(in.axis_offset);
     const AlignmentStep result = parts.alignment.step(parts.joints, isWanted, parts.model.period_s());
     if (result == AlignmentStep::STOPPED) {
         parts.power.set_mode(Mode::FREE);  // each joint moves by itself
-        rest_at(parts.jogs, parts.joints.commanded().data(), parts.programmed_pose());
+        parts.jogs.rest_at(parts.joints.commanded().data(), parts.programmed_pose());
     }
 }
 
@@ -48,7 +48,7 @@ void command_pose(ControllerParts &parts, const geometry::Pose &pose) noexcept {
     for (int j = 0; j < model.num_pose_joints(); ++j) {
         const auto n = static_cast<std::size_t>(j);
         parts.joints.follow(j, positions[n], model.period_s());
-        parts.jogs.joint[n].planner.reset(positions[n]);
+        parts.jogs.at({true, j}).reset(positions[n]);
     }
 }
 

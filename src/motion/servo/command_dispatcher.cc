@@ -37,7 +37,7 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
     for (int i = 0; i < MAX_AXES; ++i) {
         situations[static_cast<std::size_t>(i)] = jog_situation(parts, in, {false, i});
     }
-    return take(parts.jogs, command, situations.data());
+    return parts.jogs.take(command, situations.data());
 }
 
 /// Every command has a handler here; a missing one does not compile.
@@ -68,9 +68,9 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
             return c.what == Switch::SPINDLE_OVERRIDE ? parts.spindles.take(c) : parts.holds.take(c);
         },
         [&](const OneOf<JogContinuous, JogIncremental, JogAbsolute> auto &c) {
-            return take(parts.jogs, c, jog_situation(parts, in, c.target));
+            return parts.jogs.take(c, jog_situation(parts, in, c.target));
         },
-        [&](const OneOf<JogStop, OverrideLimits> auto &c) { return take(parts.jogs, c); },
+        [&](const OneOf<JogStop, OverrideLimits> auto &c) { return parts.jogs.take(c); },
         [&](const SetTeleopVector &c) { return take(parts, c, in); },
         [&](const OneOf<SpindleOn, SpindleOrient> auto &c) { return parts.spindles.take(c, isEnabled); },
         [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return parts.spindles.take(c); },

@@ -14,10 +14,9 @@ ExtraJointInputs extra_inputs(const ControllerParts &parts, const Inputs &in) no
 void command_extra_joints(ControllerParts &parts, const Inputs &in) noexcept {
     const ExtraJointEvents events = parts.extra.step(extra_inputs(parts, in));
     for (int j = parts.extra.first(); j < parts.model.num_joints(); ++j) {
-        const auto n = static_cast<std::size_t>(j);
         if (parts.extra.isCommanding(j)) {
             parts.joints.follow(j, parts.extra.position(j), parts.model.period_s());
-            parts.jogs.joint[n].planner.reset(parts.extra.position(j));
+            parts.jogs.at({true, j}).reset(parts.extra.position(j));
         }
     }
     for (std::uint32_t beyond = events.beyond; beyond != 0; beyond &= beyond - 1) {
@@ -34,7 +33,7 @@ void command_motors(ControllerParts &parts) noexcept {
     for (std::uint32_t off = parts.joints.output(parts.model.settings(), isEnabled, parts.model.period_s());
          off != 0; off &= off - 1) {
         const int j = std::countr_zero(off);
-        parts.jogs.at({true, j}).planner.reset(parts.joints[j].pos_fb);
+        parts.jogs.at({true, j}).reset(parts.joints[j].pos_fb);
     }
     if (isEnabled) [[likely]] {
         return;
@@ -43,7 +42,7 @@ void command_motors(ControllerParts &parts) noexcept {
                                  parts.position.isFbValid());
     const geometry::Pose pose = parts.programmed_pose();
     parts.executor.set_position(pose);
-    reset_axes(parts.jogs, pose);
+    parts.jogs.reset_axes(pose);
 }
 
 void command_spindles(ControllerParts &parts, const Inputs &in) noexcept {

@@ -21,11 +21,11 @@ void FreeMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
         if (parts.extra.isCommanding(j)) {
             continue;
         }
-        Jog &jog = parts.jogs.joint[n];
+        Jog &jog = parts.jogs.at({true, j});
         if ((locked & 1U << j) == 0) {
-            step_joint(jog, limits.joints.velocity[n], parts.holds.jog_scale(), period_s);
+            jog.step_joint(limits.joints.velocity[n], parts.holds.jog_scale(), period_s);
         }
-        parts.joints.follow(j, jog.planner.position, period_s);
+        parts.joints.follow(j, jog.motion().position, period_s);
     }
     parts.offsets.step({in.axis_offset, limits, {}, false, period_s});
     const kinematics::Kinematics &kinematics = parts.model.kinematics();
@@ -34,7 +34,7 @@ void FreeMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
 }
 
 bool FreeMode::isJogging(const ControllerParts &parts) const noexcept {
-    return !areJointsAtRest(parts.jogs);
+    return !parts.jogs.areJointsAtRest();
 }
 
 JogGroup FreeMode::jog_group(const ControllerParts &parts) const noexcept {
@@ -44,7 +44,7 @@ JogGroup FreeMode::jog_group(const ControllerParts &parts) const noexcept {
 std::uint32_t FreeMode::locks_wanted(const ControllerParts &parts) const noexcept {
     std::uint32_t wanted = 0;
     for (int j = 0; j < parts.model.num_joints(); ++j) {
-        wanted |= parts.jogs.at({true, j}).planner.isAtRest() ? 0U : 1U << j;
+        wanted |= parts.jogs.at({true, j}).isAtRest() ? 0U : 1U << j;
     }
     return wanted;
 }

@@ -14,7 +14,7 @@ homing::JointInput homing_input(const JointInputs &pins, const Joint &joint, con
     out.isSwitchClosed = pins.isHomeSwitchClosed;
     out.isIndexEnabled = pins.isIndexEnabled;
     out.isUnlocked = pins.isUnlocked;
-    out.isAtRest = jog.planner.isAtRest();
+    out.isAtRest = jog.isAtRest();
     out.pos_cmd = joint.pos_cmd;
     out.pos_fb = joint.pos_fb;
     out.vel_cmd = joint.vel_cmd;
@@ -56,10 +56,10 @@ geometry::Pose home_pose(const Settings &settings) noexcept {
     homing::JointCommand commands[MAX_JOINTS];
     for (int j = 0; j < num_joints; ++j) {
         const auto n = static_cast<std::size_t>(j);
-        inputs[j] = homing_input(in.joint[n], parts.joints[j], parts.jogs.joint[n], limits.joint_jog[n]);
+        inputs[j] = homing_input(in.joint[n], parts.joints[j], parts.jogs.at({true, j}), limits.joint_jog[n]);
     }
     if (!parts.homing.step(inputs, commands)) {
-        stop(parts.jogs);
+        parts.jogs.stop();
         parts.raise(FaultKind::HOMING_FAILED, -1, 0,
                     static_cast<std::uint16_t>(homing::Failure::MODULE_NONSENSE));
         return;
@@ -70,12 +70,12 @@ geometry::Pose home_pose(const Settings &settings) noexcept {
         Jog &jog = parts.jogs.at({true, j});
         if (c.isShifting) {
             parts.joints.shift(j, c.shift);
-            renumber(jog, joint.pos_cmd, c.shift);
+            jog.renumber(joint.pos_cmd, c.shift);
         } else if (c.isSettingZero) {
             parts.joints.set_zero(j, c.zero);
-            renumber(jog, joint.pos_cmd, joint.pos_cmd - jog.planner.position);
+            jog.renumber(joint.pos_cmd, joint.pos_cmd - jog.motion().position);
         }
-        home_joint(jog, c, limits.joint_jog[static_cast<std::size_t>(j)]);
+        jog.home(c, limits.joint_jog[static_cast<std::size_t>(j)]);
     }
 }
 

@@ -26,7 +26,7 @@ void step_indexers(ControllerParts &parts, const Inputs &in) noexcept {
     case LockFault::NOT_UNLOCKED: parts.raise(FaultKind::INDEXER_NOT_UNLOCKED, event.joint); break;
     }
     parts.executor.drop();
-    stop(parts.jogs);
+    parts.jogs.stop();
     parts.coord_error = true;
 }
 

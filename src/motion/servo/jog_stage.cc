@@ -11,12 +11,12 @@ bool isBesideIndexer(const ControllerParts &parts, const JogTarget &target) noex
     const FoldedLimits &limits = parts.model.limits();
     const std::uint32_t own = limits.locks_of(target);
     bool is = (parts.indexers.busy() & ~own) != 0;
-    const int count = target.isJoint ? parts.jogs.num_joints : MAX_AXES;
+    const int count = target.isJoint ? parts.jogs.num_joints() : MAX_AXES;
     for (int i = 0; i < count; ++i) {
         const JogTarget other{target.isJoint, i};
         const bool areOne = own != 0 && (limits.locks_of(other) & own) != 0;
         const bool isLone = own != 0 || limits.locks_of(other) != 0;
-        const bool isMoving = !parts.jogs.at(other).planner.isAtRest();
+        const bool isMoving = !parts.jogs.at(other).isAtRest();
         is = is || (i != target.index && !areOne && isLone && isMoving);
     }
     return is;
@@ -36,7 +36,7 @@ JogRange range_of(const ControllerParts &parts, const JogTarget &target) noexcep
 
 JogSituation jog_situation(const ControllerParts &parts, const Inputs &in, const JogTarget &target) noexcept {
     JogSituation s;
-    if (!hasTarget(parts.jogs, target)) {
+    if (!parts.jogs.hasTarget(target)) {
         return s;
     }
     const FoldedLimits &limits = parts.model.limits();
@@ -58,43 +58,43 @@ JogSituation jog_situation(const ControllerParts &parts, const Inputs &in, const
     s.isLocked = limits.locks_of(target) != 0;
     s.isShared = !target.isJoint && !map.areJointsAxes();
     s.isBesideIndexer = !parts.indexers.isEmpty() && isBesideIndexer(parts, target);
-    s.most = limits.jog(target);
+    s.limits = limits.jog(target);
     s.range = range_of(parts, target);
     return s;
 }
 
 void keep_jogs_within_limits(ControllerParts &parts) noexcept {
     for (int j = 0; j < parts.model.num_joints(); ++j) {
-        keep_within(parts.jogs.at({true, j}), range_of(parts, {true, j}));
+        parts.jogs.at({true, j}).keep_within(range_of(parts, {true, j}));
     }
     for (int i = 0; i < MAX_AXES; ++i) {
-        keep_within(parts.jogs.at({false, i}), range_of(parts, {false, i}));
+        parts.jogs.at({false, i}).keep_within(range_of(parts, {false, i}));
     }
 }
 
 /// Jogs whose lease is not renewed stop here, also if task and client have ended.
 void step_jogs(ControllerParts &parts, const Inputs &in) noexcept {
     Jogs &jogs = parts.jogs;
-    for (JogTarget over = end_lease(jogs, in.time_ns); over.index >= 0; over = end_lease(jogs, in.time_ns)) {
-        const auto lease_ns = static_cast<double>(jogs.at(over).lease.length_ns);
+    for (JogTarget over = jogs.end_lease(in.time_ns); over.index >= 0; over = jogs.end_lease(in.time_ns)) {
+        const auto lease_ns = static_cast<double>(jogs.at(over).lease().length_ns);
         parts.raise(FaultKind::JOG_LEASE_ENDED, over.index, lease_ns * 1e-9, over.isJoint ? 1 : 0);
     }
     if (in.isJogStoppedNow) [[unlikely]] {
-        stop_at_once(jogs);
+        jogs.stop_at_once();
     } else if (in.isJogStopped && !parts.homing.isActive()) [[unlikely]] {
-        stop(jogs);
+        jogs.stop();
     }
     const JogGroup group = motion_mode(parts.power.mode()).jog_group(parts);
     for (int i = 0; i < group.count; ++i) {
         const JogTarget target{group.areJoints, i};
         const auto n = static_cast<std::size_t>(i);
         const WheelInput &wheel = group.areJoints ? in.joint[n].wheel : in.axis_wheel[n];
-        const double distance = turned(jogs.at(target), wheel);
+        const double distance = jogs.at(target).turned(wheel);
         if (distance != 0.0) [[unlikely]] {
-            jog_by_wheel(jogs, target, distance, wheel, jog_situation(parts, in, target));
+            jogs.jog_by_wheel(target, distance, wheel, jog_situation(parts, in, target));
         }
     }
-    settle(jogs, in);
+    jogs.settle(in);
 }
 
 }  // namespace mw::motion

@@ -30,7 +30,7 @@ namespace {
     }
     parts.position.set_cmd(pose);
     parts.restart_path(pose);
-    rest_at(parts.jogs, parts.joints.commanded().data(), pose);
+    parts.jogs.rest_at(parts.joints.commanded().data(), pose);
     parts.publish_joint_start();
 }
 

@@ -37,7 +37,7 @@ CommandResult take(ControllerParts &parts, const Enable &, const Inputs &in) noe
     if (parts.power.isEnabled()) {
         return {parts.power.isStopping() ? Reason::MOVING : Reason::NONE};
     }
-    const CommandResult start = parts.joints.check_start(in, parts.jogs.areLimitsOverridden);
+    const CommandResult start = parts.joints.check_start(in, parts.jogs.areLimitsOverridden());
     if (start.reason != Reason::NONE) {
         return start;
     }
@@ -50,7 +50,7 @@ CommandResult take(ControllerParts &parts, const Enable &, const Inputs &in) noe
     parts.power.switch_on();
     parts.joints.switch_on();
     parts.offsets.start_at_zero(in);
-    start_at(parts.jogs, parts.joints.commanded().data(), parts.position.cmd(), in);
+    parts.jogs.start_at(parts.joints.commanded().data(), parts.position.cmd(), in);
     parts.indexers.switch_on(unlocked_pins(in));
     parts.extra.switch_on(extra_inputs(parts, in));
     parts.coord_error = false;
@@ -76,7 +76,7 @@ CommandResult take(ControllerParts &parts, const SetMode &command) noexcept {
     const geometry::Pose pose = parts.programmed_pose();
     parts.restart_path(pose);
     parts.executor.hold(false);
-    rest_at(parts.jogs, parts.joints.commanded().data(), pose);
+    parts.jogs.rest_at(parts.joints.commanded().data(), pose);
     parts.holds.release();
     parts.power.set_mode(mode);
     parts.publish_joint_start();
@@ -138,7 +138,7 @@ CommandResult take(ControllerParts &parts, const Home &command, const Inputs &in
                                     parts.joints.inactive()};
     const CommandResult result = parts.homing.take(command, conditions);
     if (result.reason == Reason::NONE) {
-        stop(parts.jogs);
+        parts.jogs.stop();
     }
     return result;
 }

@@ -12,7 +12,7 @@ ControllerParts::ControllerParts(const ControllerConfig &config, const kinematic
       homing(config.period_s, config.homing), spindles(config.num_spindles),
       outputs(config.num_dio, config.num_aio), executor(link_used.store, config.period_s) {
     use_joints(config.num_joints);
-    jogs.axes = model.limits().axes;  // there are never more joints than now
+    jogs.set_axes(model.limits().axes);  // there are never more joints than now
     const kinematics::IdentityMap *identity = kinematics.identity();
     const int count = config.num_pose_joints();
     for (int j = identity != nullptr ? identity->num_joints : count; j < count; ++j) {
@@ -32,7 +32,7 @@ void ControllerParts::use_joints(int count) noexcept {
     const kinematics::IdentityMap *identity = model.kinematics().identity();
     model.use_joints(count);
     joints.use_joints(count);
-    jogs.num_joints = count;
+    jogs.use_joints(count);
     extra.use_joints(count - model.num_extra_joints(), model.num_extra_joints());
     const int num_to_home =
         identity != nullptr && extra.count() == 0 ? std::min(identity->num_joints, count) : count;
@@ -74,7 +74,7 @@ void ControllerParts::stop_category_1(FaultKind kind, int index, double value) n
 void ControllerParts::brake() noexcept {
     homing.abort(homing::event::ABORT);
     executor.drop();
-    stop(jogs);
+    jogs.stop();
     alignment.stop();
     extra.hold();
 }
@@ -87,7 +87,7 @@ void ControllerParts::switch_off() noexcept {
     holds.release();
     joints.switch_off();
     indexers.switch_off();
-    forget_sources(jogs);
+    jogs.forget_sources();
     homing.switch_off(model.settings());
     spindles.switch_off();
     publish_limits();

@@ -29,7 +29,7 @@ void check_probe(ControllerParts &parts, const Inputs &in) noexcept {
         parts.raise(FaultKind::PROBE_TRIPPED_IN_MOVE, -1, 0, isOnPath ? 0 : 1);
         parts.homing.abort(homing::event::ABORT);
         executor.drop();
-        stop(parts.jogs);
+        parts.jogs.stop();
         parts.coord_error = true;
         break;
     }

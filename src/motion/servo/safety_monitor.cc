@@ -10,7 +10,7 @@ namespace {
 JointCheck joint_check(const ControllerParts &parts, const Inputs &in) noexcept {
     const HomingDrive &homing = parts.homing;
     JointCheck how;
-    how.limits_ignored = parts.jogs.areLimitsOverridden ? ~0U : 0U;
+    how.limits_ignored = parts.jogs.areLimitsOverridden() ? ~0U : 0U;
     how.feedback_ignored = parts.extra.mask() & parts.model.limits().homed.joints;
     if (parts.homing.hasWork()) [[unlikely]] {
         for (int j = 0; j < parts.model.num_joints(); ++j) {

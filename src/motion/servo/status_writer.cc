@@ -188,8 +188,8 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
     fill_path(parts, programmed, s);
     fill_heading(parts.link->store, parts.executor.output().move, programmed, out);
     parts.joints.fill(
-        {parts.power.isEnabled(), parts.jogs.areLimitsOverridden, parts.model.limits().homed.joints}, out);
-    fill(parts.jogs, parts.power.mode(), programmed, out);
+        {parts.power.isEnabled(), parts.jogs.areLimitsOverridden(), parts.model.limits().homed.joints}, out);
+    parts.jogs.fill(parts.power.mode(), programmed, out);
     if (!parts.offsets.isEmpty() || !out.areOffsetsQuiet) [[unlikely]] {
         parts.offsets.fill(out);
     }

@@ -3,7 +3,6 @@
 #include <bit>
 
 #include "motion/servo/cartesian_drive.hh"
-#include "motion/servo/jogs/teleop.hh"
 #include "motion/servo/motion_mode.hh"
 #include "motion/servo/probe_stage.hh"
 
@@ -34,7 +33,7 @@ void step_axes_together(ControllerParts &parts, std::uint32_t locked) noexcept {
                                 model.period_s(),
                                 model.kinematics().side(parts.position.cmd()),
                                 locked};
-    const TeleopStop stopped = step_teleop(parts.jogs, machine);
+    const TeleopStop stopped = parts.jogs.step_teleop(machine);
     if (stopped.isNew && stopped.joint >= 0) {
         parts.raise(FaultKind::JOG_JOINT_LIMIT, stopped.joint);
     } else if (stopped.isNew) {
@@ -54,12 +53,12 @@ geometry::Pose jogged_pose(ControllerParts &parts) noexcept {
     for (int i = 0; i < MAX_AXES; ++i) {
         Jog &jog = parts.jogs.at({false, i});
         if (areJointsAxes) {
-            limit_axis(jog, limits.jog({false, i}).velocity, parts.holds.jog_scale());
+            jog.limit(limits.jog({false, i}).velocity, parts.holds.jog_scale());
             if ((locked & 1U << i) == 0) {
-                jog.planner.step(parts.model.period_s());
+                jog.step(parts.model.period_s());
             }
         }
-        pose[i] = jog.planner.position;
+        pose[i] = jog.motion().position;
     }
     return pose;
 }
@@ -69,7 +68,7 @@ TravelRange jogged_range(const Jogs &jogs, const geometry::Pose &pose, const Sha
     TravelRange out{{pose, pose}, shared.at(pose)};
     PoseRange stops{pose, pose};
     for (int i = 0; i < MAX_AXES; ++i) {
-        jogs.at({false, i}).planner.add_reach(out.axes.low[i], out.axes.high[i]);
+        jogs.at({false, i}).motion().add_reach(out.axes.low[i], out.axes.high[i]);
         // A jog may need a longer distance to stop when the joints allow it less.
         constexpr double MARGIN = 1.2;
         stops.low[i] += MARGIN * (out.axes.low[i] - pose[i]);
@@ -101,7 +100,7 @@ void TeleopMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
 }
 
 bool TeleopMode::isJogging(const ControllerParts &parts) const noexcept {
-    return !areAxesAtRest(parts.jogs);
+    return !parts.jogs.areAxesAtRest();
 }
 
 JogGroup TeleopMode::jog_group(const ControllerParts &) const noexcept {
@@ -110,9 +109,9 @@ JogGroup TeleopMode::jog_group(const ControllerParts &) const noexcept {
 
 std::uint32_t TeleopMode::locks_wanted(const ControllerParts &parts) const noexcept {
     std::uint32_t wanted = 0;
-    for (std::uint32_t left = parts.jogs.axes; left != 0; left &= left - 1) {
+    for (std::uint32_t left = parts.jogs.axes(); left != 0; left &= left - 1) {
         const JogTarget axis{false, std::countr_zero(left)};
-        wanted |= parts.jogs.at(axis).planner.isAtRest() ? 0U : parts.model.limits().locks_of(axis);
+        wanted |= parts.jogs.at(axis).isAtRest() ? 0U : parts.model.limits().locks_of(axis);
     }
     return wanted;
 }

@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "motion/servo/jogs/teleop.hh"
+#include "motion/servo/jogs/jogs.hh"
 
 namespace mw::motion {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "motion/servo/jogs/teleop.hh"
-
+// Jogs of axes on machines whose joints are not axes. After every cycle the axes have a stop in which no
+// joint exceeds a limit: a cycle that would end without one is not begun, and the axes brake along the stop
+// that they have.
 #include <algorithm>
 #include <cmath>
 
@@ -44,13 +45,15 @@ struct Attempt {
     int joint = -1;  ///< of JOINT_LIMIT; -1: the kinematics has no solution
 };
 
+using AxisJogs = std::array<Jog, MAX_AXES>;
+
 /// The jogs of one cycle.
 class TeleopCycle {
   public:
-    TeleopCycle(Jogs &jogs, const TeleopMachine &machine) noexcept : jogs_(jogs), m_(machine) {
+    TeleopCycle(AxisJogs &jogs, const TeleopMachine &machine) noexcept : jogs_(jogs), m_(machine) {
         load_.hasJerk = m_.limits.path.isJerkLimited;
         for (int i = 0; i < MAX_AXES; ++i) {
-            const trajectory::AxisMotion &p = planner(i);
+            const trajectory::AxisMotion &p = motion(i);
             here_[i] = p.position;
             if (p.isAtRest() || (m_.locked & bit(i)) != 0) {
                 continue;
@@ -62,7 +65,8 @@ class TeleopCycle {
         }
     }
 
-    TeleopStop run() noexcept {
+    /// `wasStopped`: jogs were stopped before, and reported.
+    TeleopStop run(bool wasStopped) noexcept {
         if (wanting_ == 0) {
             return {};
         }
@@ -74,15 +78,14 @@ class TeleopCycle {
             stop_all();
         }
         brake();
-        const bool isNew = attempt.kind == Attempt::Kind::JOINT_LIMIT && !jogs_.isTeleopStopped;
-        jogs_.isTeleopStopped = jogs_.isTeleopStopped || isNew;
+        const bool isNew = attempt.kind == Attempt::Kind::JOINT_LIMIT && !wasStopped;
         return {isNew, attempt.joint};
     }
 
   private:
-    trajectory::AxisMotion &planner(int axis) noexcept { return jogs_.axis[at(axis)].planner; }
-    const trajectory::AxisMotion &planner(int axis) const noexcept { return jogs_.axis[at(axis)].planner; }
-    const Jog &jog(int i) const noexcept { return jogs_.axis[at(load_.axes[at(i)])]; }
+    const trajectory::AxisMotion &motion(int axis) const noexcept { return jogs_[at(axis)].motion(); }
+    Jog &jog(int i) noexcept { return jogs_[at(load_.axes[at(i)])]; }
+    const Jog &jog(int i) const noexcept { return jogs_[at(load_.axes[at(i)])]; }
 
     /// All axes with their share of the joints. Else those that move, and the others wait: with the same
     /// share, to make room for the others, with what they can have alone, or with the limits in force.
@@ -115,9 +118,9 @@ class TeleopCycle {
         AxisDemand out;
         for (int i = 0; i < load_.count; ++i) {
             const double most = m_.limits.axis_jog[at(load_.axes[at(i)])].velocity;
-            out.velocity[at(i)] = std::min(jog(i).wanted.velocity * m_.scale, most);
-            out.acceleration[at(i)] = jog(i).wanted.acceleration;
-            out.jerk[at(i)] = jog(i).wanted.jerk;
+            out.velocity[at(i)] = std::min(jog(i).wanted().velocity * m_.scale, most);
+            out.acceleration[at(i)] = jog(i).wanted().acceleration;
+            out.jerk[at(i)] = jog(i).wanted().jerk;
         }
         return out;
     }
@@ -125,8 +128,8 @@ class TeleopCycle {
     AxisDemand in_force(const AxisDemand &speeds) const noexcept {
         AxisDemand out = speeds;
         for (int i = 0; i < load_.count; ++i) {
-            out.acceleration[at(i)] = jog(i).planner.max_acceleration;
-            out.jerk[at(i)] = jog(i).planner.max_jerk;
+            out.acceleration[at(i)] = jog(i).motion().max_acceleration;
+            out.jerk[at(i)] = jog(i).motion().max_jerk;
         }
         return out;
     }
@@ -135,13 +138,13 @@ class TeleopCycle {
     bool look() noexcept {
         double square = 0;
         for (int i = 0; i < load_.count; ++i) {
-            load_.direction[at(i)] = jog(i).wanted.velocity;
+            load_.direction[at(i)] = jog(i).wanted().velocity;
             square += load_.direction[at(i)] * load_.direction[at(i)];
         }
         geometry::Pose far = here_;
         for (int i = 0; i < load_.count; ++i) {
             const int axis = load_.axes[at(i)];
-            const trajectory::AxisMotion &p = planner(axis);
+            const trajectory::AxisMotion &p = motion(axis);
             load_.direction[at(i)] *= p.target < p.position ? -1.0 : 1.0;
             load_.direction[at(i)] /= square > 0 ? std::sqrt(square) : 1.0;
             const double more = 2.0 * p.velocity * m_.period_s;
@@ -179,7 +182,7 @@ class TeleopCycle {
             geometry::Pose pose = pose_of(stop, stop.longest_s * n / PLACES);
             for (int i = 0; i < load_.count; ++i) {
                 const int axis = load_.axes[at(i)];
-                pose[axis] += 2.0 * planner(axis).velocity * m_.period_s;
+                pose[axis] += 2.0 * motion(axis).velocity * m_.period_s;
             }
             isFound = add_pose(m_, pose, load);
         }
@@ -188,7 +191,7 @@ class TeleopCycle {
 
     /// Begins the cycle with these limits if it leaves the axes of `members` a stop.
     Attempt attempt_with(const AxisDemand &limits, std::uint32_t members) noexcept {
-        const std::array<Jog, MAX_AXES> before = jogs_.axis;
+        const AxisJogs before = jogs_;
         AxisDemand now = limits;
         bool hasStop = true;
         bool isNear = true;
@@ -197,15 +200,13 @@ class TeleopCycle {
             if (!isMember(members, i)) {
                 continue;
             }
-            trajectory::AxisMotion &p = planner(axis);
+            const trajectory::AxisMotion &p = motion(axis);
             double low = p.position;
             double high = p.position;
             p.add_reach(low, high);
-            p.max_velocity = limits.velocity[at(i)];
-            p.max_acceleration = limits.acceleration[at(i)];
-            p.max_jerk = limits.jerk[at(i)];
+            jog(i).set_limits({limits.velocity[at(i)], limits.acceleration[at(i)], limits.jerk[at(i)]});
             const trajectory::MotionState begin{0, p.velocity, p.acceleration};
-            p.step(m_.period_s);
+            jog(i).step(m_.period_s);
             now.velocity[at(i)] = std::max(std::abs(begin.v), fastest_of(p));
             // It is faster within the cycle where its acceleration changes sign.
             const bool isPeak = begin.a * p.acceleration < 0;
@@ -230,7 +231,7 @@ class TeleopCycle {
             out = examine_stop(members);
         }
         if (out.kind != Attempt::Kind::ACCEPTED) {
-            jogs_.axis = before;
+            jogs_ = before;
         }
         return out;
     }
@@ -292,7 +293,7 @@ class TeleopCycle {
         stop.members = members;
         for (int i = 0; i < load_.count; ++i) {
             if (isMember(members, i)) {
-                stop.axis[at(i)] = jog(i).planner.stopping();
+                stop.axis[at(i)] = jog(i).motion().stopping();
                 stop.longest_s = std::max(stop.longest_s, stop.axis[at(i)].duration);
             }
         }
@@ -301,7 +302,7 @@ class TeleopCycle {
     geometry::Pose pose_of(const Stop &stop, double t) const noexcept {
         geometry::Pose pose = here_;
         for (int i = 0; i < load_.count; ++i) {
-            const trajectory::AxisMotion &p = jog(i).planner;
+            const trajectory::AxisMotion &p = jog(i).motion();
             pose[load_.axes[at(i)]] =
                 isMember(stop.members, i) ? p.stop_position(stop.axis[at(i)], t) : p.position;
         }
@@ -309,21 +310,21 @@ class TeleopCycle {
     }
     void stop_all() noexcept {
         for (int i = 0; i < load_.count; ++i) {
-            planner(load_.axes[at(i)]).stop();
+            jog(i).stop();
         }
     }
     /// The axes that move brake with the current limits: that stop has been accepted.
     void brake() noexcept {
         for (int i = 0; i < load_.count; ++i) {
-            trajectory::AxisMotion &p = planner(load_.axes[at(i)]);
-            p.max_velocity = 0;
+            const trajectory::AxisMotion &m = jog(i).motion();
+            jog(i).set_limits({0, m.max_acceleration, m.max_jerk});
             if (isMember(moving_, i)) {
-                p.step(m_.period_s);
+                jog(i).step(m_.period_s);
             }
         }
     }
 
-    Jogs &jogs_;
+    AxisJogs &jogs_;
     const TeleopMachine &m_;
     geometry::Pose here_;
     std::uint32_t wanting_ = 0;  ///< bit per axis that is not at its target
@@ -336,8 +337,10 @@ class TeleopCycle {
 
 }  // namespace
 
-TeleopStop step_teleop(Jogs &jogs, const TeleopMachine &machine) noexcept {
-    return TeleopCycle(jogs, machine).run();
+TeleopStop Jogs::step_teleop(const TeleopMachine &machine) noexcept {
+    const TeleopStop stop = TeleopCycle(axis_, machine).run(teleop_stopped_);
+    teleop_stopped_ = teleop_stopped_ || stop.isNew;
+    return stop;
 }
 
 }  // namespace mw::motion

@@ -6,7 +6,6 @@
 #include "kinematics/rotary_table.hh"
 #include "motion/servo/jogs/jogs.hh"
 #include "motion/servo/jogs/joint_load.hh"
-#include "motion/servo/jogs/teleop.hh"
 
 namespace mw::motion {
 namespace {
@@ -17,21 +16,21 @@ constexpr JogTarget AXIS{false, geometry::AXIS_X};
 
 Jogs make() {
     Jogs jogs;
-    jogs.num_joints = 2;
+    jogs.use_joints(2);
     return jogs;
 }
 
 JogSituation free_mode() {
     JogSituation s;
     s.isReady = s.isMovable = true;
-    s.most = {50, 500, 0};
+    s.limits = {50, 500, 0};
     s.range = {-10, 10};
     return s;
 }
 
 void run(Jogs &jogs, const JogTarget &target, int cycles) {
     for (int n = 0; n < cycles; ++n) {
-        jogs.at(target).planner.step(T);
+        jogs.at(target).step(T);
     }
 }
 
@@ -40,7 +39,7 @@ TEST(JogsPart, EachReasonAgainstAJogIsTold) {
     const auto reason = [&](auto change, JogTarget target = JOINT) {
         JogSituation s = free_mode();
         change(s);
-        return take(jogs, JogContinuous{target, 5}, s).reason;
+        return jogs.take(JogContinuous{target, 5}, s).reason;
     };
     EXPECT_EQ(reason([](JogSituation &) {}, {true, 2}), Reason::NO_SUCH_JOINT);
     EXPECT_EQ(reason([](JogSituation &) {}, {false, 9}), Reason::NO_SUCH_AXIS);
@@ -56,12 +55,12 @@ TEST(JogsPart, EachReasonAgainstAJogIsTold) {
 
 TEST(JogsPart, AContinuousJogEndsAtTheSoftLimit) {
     Jogs jogs = make();
-    ASSERT_EQ(take(jogs, JogContinuous{JOINT, 80}, free_mode()).reason, Reason::NONE);
-    EXPECT_EQ(jogs.at(JOINT).planner.max_velocity, 50) << "no faster than the joint";
+    ASSERT_EQ(jogs.take(JogContinuous{JOINT, 80}, free_mode()).reason, Reason::NONE);
+    EXPECT_EQ(jogs.at(JOINT).motion().max_velocity, 50) << "no faster than the joint";
     run(jogs, JOINT, 1000);
-    EXPECT_EQ(jogs.at(JOINT).planner.position, 10);
-    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 80}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
-    EXPECT_EQ(take(jogs, JogContinuous{JOINT, -80}, free_mode()).reason, Reason::NONE);
+    EXPECT_EQ(jogs.at(JOINT).motion().position, 10);
+    EXPECT_EQ(jogs.take(JogContinuous{JOINT, 80}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
+    EXPECT_EQ(jogs.take(JogContinuous{JOINT, -80}, free_mode()).reason, Reason::NONE);
 }
 
 TEST(JogsPart, ALeaseIsRenewedByTheSameCommandAndEndsOnce) {
@@ -69,64 +68,64 @@ TEST(JogsPart, ALeaseIsRenewedByTheSameCommandAndEndsOnce) {
     Jogs jogs = make();
     JogSituation s = free_mode();
     s.time_ns = 5 * MS;
-    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, 0.1, true}, s).reason, Reason::NO_JOG_TO_RENEW);
+    EXPECT_EQ(jogs.take(JogContinuous{JOINT, 5, 0.1, true}, s).reason, Reason::NO_JOG_TO_RENEW);
     for (const double lease_s : {-1.0, 0.019, 10.1, double{NAN}, double{INFINITY}}) {
-        EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, lease_s}, s).reason, Reason::OUT_OF_RANGE) << lease_s;
+        EXPECT_EQ(jogs.take(JogContinuous{JOINT, 5, lease_s}, s).reason, Reason::OUT_OF_RANGE) << lease_s;
     }
-    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, 0, true}, s).reason, Reason::OUT_OF_RANGE);
-    EXPECT_TRUE(jogs.at(JOINT).planner.isAtRest()) << "a rejected command moves nothing";
-    ASSERT_EQ(take(jogs, JogContinuous{JOINT, 5, 0.1}, s).reason, Reason::NONE);
+    EXPECT_EQ(jogs.take(JogContinuous{JOINT, 5, 0, true}, s).reason, Reason::OUT_OF_RANGE);
+    EXPECT_TRUE(jogs.at(JOINT).isAtRest()) << "a rejected command moves nothing";
+    ASSERT_EQ(jogs.take(JogContinuous{JOINT, 5, 0.1}, s).reason, Reason::NONE);
     run(jogs, JOINT, 50);
-    EXPECT_LT(end_lease(jogs, 104 * MS).index, 0);
+    EXPECT_LT(jogs.end_lease(104 * MS).index, 0);
     s.time_ns = 104 * MS;
-    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 8, 0.2, true}, s).reason, Reason::NONE);
-    EXPECT_EQ(jogs.at(JOINT).wanted.velocity, 8);
-    EXPECT_LT(end_lease(jogs, 303 * MS).index, 0);
-    const JogTarget over = end_lease(jogs, 304 * MS);
+    EXPECT_EQ(jogs.take(JogContinuous{JOINT, 8, 0.2, true}, s).reason, Reason::NONE);
+    EXPECT_EQ(jogs.at(JOINT).wanted().velocity, 8);
+    EXPECT_LT(jogs.end_lease(303 * MS).index, 0);
+    const JogTarget over = jogs.end_lease(304 * MS);
     EXPECT_TRUE(over.isJoint);
     EXPECT_EQ(over.index, 0);
-    EXPECT_LT(end_lease(jogs, 304 * MS).index, 0) << "told once";
-    EXPECT_LT(jogs.at(JOINT).planner.target, 1) << "it brakes";
+    EXPECT_LT(jogs.end_lease(304 * MS).index, 0) << "told once";
+    EXPECT_LT(jogs.at(JOINT).motion().target, 1) << "it brakes";
     s.time_ns = 305 * MS;
-    EXPECT_EQ(take(jogs, JogContinuous{JOINT, 8, 0.2, true}, s).reason, Reason::NO_JOG_TO_RENEW);
+    EXPECT_EQ(jogs.take(JogContinuous{JOINT, 8, 0.2, true}, s).reason, Reason::NO_JOG_TO_RENEW);
 }
 
 TEST(JogsPart, WhatStopsOrReplacesAJogEndsItsLease) {
     const auto isLeft = [](auto change) {
         Jogs jogs = make();
-        EXPECT_EQ(take(jogs, JogContinuous{JOINT, 5, 0.1}, free_mode()).reason, Reason::NONE);
+        EXPECT_EQ(jogs.take(JogContinuous{JOINT, 5, 0.1}, free_mode()).reason, Reason::NONE);
         run(jogs, JOINT, 20);
         change(jogs);
-        return take(jogs, JogContinuous{JOINT, 5, 0.1, true}, free_mode()).reason == Reason::NONE;
+        return jogs.take(JogContinuous{JOINT, 5, 0.1, true}, free_mode()).reason == Reason::NONE;
     };
     EXPECT_TRUE(isLeft([](Jogs &) {}));
-    EXPECT_TRUE(isLeft([](Jogs &j) { take(j, JogStop{{true, 1}}); })) << "another joint's";
-    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogStop{JOINT}); }));
-    EXPECT_FALSE(isLeft([](Jogs &j) { stop(j); }));
-    EXPECT_FALSE(isLeft([](Jogs &j) { stop_at_once(j); }));
-    EXPECT_FALSE(isLeft([](Jogs &j) { forget_sources(j); }));
-    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogIncremental{JOINT, 5, -1}, free_mode()); }));
-    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogAbsolute{JOINT, 5, 1}, free_mode()); }));
-    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogContinuous{JOINT, 5}, free_mode()); }));
-    EXPECT_FALSE(isLeft([](Jogs &j) { take(j, JogContinuous{JOINT, -5, 0.1}, free_mode()); })) << "turned";
+    EXPECT_TRUE(isLeft([](Jogs &j) { j.take(JogStop{{true, 1}}); })) << "another joint's";
+    EXPECT_FALSE(isLeft([](Jogs &j) { j.take(JogStop{JOINT}); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { j.stop(); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { j.stop_at_once(); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { j.forget_sources(); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { j.take(JogIncremental{JOINT, 5, -1}, free_mode()); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { j.take(JogAbsolute{JOINT, 5, 1}, free_mode()); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { j.take(JogContinuous{JOINT, 5}, free_mode()); }));
+    EXPECT_FALSE(isLeft([](Jogs &j) { j.take(JogContinuous{JOINT, -5, 0.1}, free_mode()); })) << "turned";
 }
 
 TEST(JogsPart, IncrementsAddUpAndStayWithinTheRange) {
     Jogs jogs = make();
-    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::NONE);
-    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::NONE);
-    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
-    EXPECT_EQ(take(jogs, JogIncremental{JOINT, -1, 1}, free_mode()).reason, Reason::OUT_OF_RANGE);
-    EXPECT_EQ(take(jogs, JogAbsolute{JOINT, 20, NAN}, free_mode()).reason, Reason::NOT_A_NUMBER);
+    EXPECT_EQ(jogs.take(JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::NONE);
+    EXPECT_EQ(jogs.take(JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::NONE);
+    EXPECT_EQ(jogs.take(JogIncremental{JOINT, 20, 4}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
+    EXPECT_EQ(jogs.take(JogIncremental{JOINT, -1, 1}, free_mode()).reason, Reason::OUT_OF_RANGE);
+    EXPECT_EQ(jogs.take(JogAbsolute{JOINT, 20, NAN}, free_mode()).reason, Reason::NOT_A_NUMBER);
     run(jogs, JOINT, 2000);
-    EXPECT_EQ(jogs.at(JOINT).planner.position, 8);
+    EXPECT_EQ(jogs.at(JOINT).motion().position, 8);
 }
 
 TEST(JogsPart, FromOutsideTheLimitsOneMovesBackIn) {
     Jogs jogs = make();
-    jogs.at(JOINT).planner.reset(12);
-    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, 1}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
-    EXPECT_EQ(take(jogs, JogIncremental{JOINT, 20, -1}, free_mode()).reason, Reason::NONE);
+    jogs.at(JOINT).reset(12);
+    EXPECT_EQ(jogs.take(JogIncremental{JOINT, 20, 1}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
+    EXPECT_EQ(jogs.take(JogIncremental{JOINT, 20, -1}, free_mode()).reason, Reason::NONE);
 }
 
 TEST(JogsPart, AWheelCountsTurnsAcrossTheWrapAndGivesWayToKeys) {
@@ -135,37 +134,37 @@ TEST(JogsPart, AWheelCountsTurnsAcrossTheWrapAndGivesWayToKeys) {
     wheel.isEnabled = true;
     wheel.scale = 0.5;
     wheel.counts = -2147483647;
-    jogs.at(JOINT).wheel_counts = 2147483647;
-    EXPECT_EQ(turned(jogs.at(JOINT), wheel), 1.0) << "two counts over the wrap";
-    jog_by_wheel(jogs, JOINT, 30, wheel, free_mode());
-    EXPECT_EQ(jogs.at(JOINT).planner.target, 10)
+    jogs.at(JOINT).set_wheel_counts(2147483647);
+    EXPECT_EQ(jogs.at(JOINT).turned(wheel), 1.0) << "two counts over the wrap";
+    jogs.jog_by_wheel(JOINT, 30, wheel, free_mode());
+    EXPECT_EQ(jogs.at(JOINT).motion().target, 10)
         << "clamped: a wheel is not a command and cannot be rejected";
-    EXPECT_EQ(jogs.at(JOINT).source, JogSource::WHEEL);
-    stop_at_once(jogs);
-    take(jogs, JogContinuous{JOINT, -5}, free_mode());
+    EXPECT_EQ(jogs.at(JOINT).source(), JogSource::WHEEL);
+    jogs.stop_at_once();
+    jogs.take(JogContinuous{JOINT, -5}, free_mode());
     run(jogs, JOINT, 10);
-    EXPECT_EQ(turned(jogs.at(JOINT), wheel), 0.0) << "a key is pressed";
+    EXPECT_EQ(jogs.at(JOINT).turned(wheel), 0.0) << "a key is pressed";
 }
 
 TEST(JogsPart, AStopOfAWheelTakesAllTheAcceleration) {
     for (const double jerk : {0.0, 2e4}) {
         JogSituation s = free_mode();
-        s.most.jerk = jerk;
+        s.limits.jerk = jerk;
         const auto cycles_to_stop = [&](double fraction, bool isWheelAlone) {
             Jogs jogs = make();
             WheelInput wheel;
             wheel.isEnabled = wheel.isVelocityMode = true;
             wheel.accel_fraction = fraction;
-            jog_by_wheel(jogs, JOINT, 15, wheel, s);
+            jogs.jog_by_wheel(JOINT, 15, wheel, s);
             run(jogs, JOINT, 300);
             if (isWheelAlone) {
-                turned(jogs.at(JOINT), wheel);
+                jogs.at(JOINT).turned(wheel);
             } else {
-                stop(jogs);
+                jogs.stop();
             }
-            const double v = jogs.at(JOINT).planner.velocity;
+            const double v = jogs.at(JOINT).motion().velocity;
             int n = 0;
-            for (; !jogs.at(JOINT).planner.isAtRest() && n < 5000; ++n) {
+            for (; !jogs.at(JOINT).isAtRest() && n < 5000; ++n) {
                 run(jogs, JOINT, 1);
             }
             return std::pair{n, v};
@@ -182,36 +181,36 @@ TEST(JogsPart, AStopOfAWheelTakesAllTheAcceleration) {
 TEST(JogsPart, OverriddenLimitsEndWithTheJog) {
     Jogs jogs = make();
     Inputs in;
-    take(jogs, OverrideLimits{true});
-    settle(jogs, in);
-    EXPECT_TRUE(jogs.areLimitsOverridden);
-    take(jogs, JogIncremental{JOINT, 20, 0.1}, free_mode());
-    settle(jogs, in);
-    EXPECT_TRUE(jogs.areLimitsOverridden);
+    jogs.take(OverrideLimits{true});
+    jogs.settle(in);
+    EXPECT_TRUE(jogs.areLimitsOverridden());
+    jogs.take(JogIncremental{JOINT, 20, 0.1}, free_mode());
+    jogs.settle(in);
+    EXPECT_TRUE(jogs.areLimitsOverridden());
     run(jogs, JOINT, 500);
-    settle(jogs, in);
-    EXPECT_FALSE(jogs.areLimitsOverridden);
-    EXPECT_EQ(jogs.at(JOINT).source, JogSource::NONE);
+    jogs.settle(in);
+    EXPECT_FALSE(jogs.areLimitsOverridden());
+    EXPECT_EQ(jogs.at(JOINT).source(), JogSource::NONE);
 }
 
 TEST(JogsPart, OneJoggedJointOrAxisIsEnoughToTellOfAJog) {
     for (const bool isJoint : {true, false}) {
         Jogs jogs = make();
-        jogs.axes = 0b111;
+        jogs.set_axes(0b111);
         const JogTarget target = isJoint ? JOINT : AXIS;
         JogSituation situation = free_mode();
         situation.mode = isJoint ? Mode::FREE : Mode::TELEOP;
         const auto jog_is_active = [&] {
             Outputs out;
-            settle(jogs, {});
-            fill(jogs, situation.mode, {}, out);
+            jogs.settle({});
+            jogs.fill(situation.mode, {}, out);
             return out.isJogging;
         };
         EXPECT_FALSE(jog_is_active());
-        ASSERT_EQ(take(jogs, JogContinuous{target, 5}, situation).reason, Reason::NONE);
+        ASSERT_EQ(jogs.take(JogContinuous{target, 5}, situation).reason, Reason::NONE);
         run(jogs, target, 20);
         EXPECT_TRUE(jog_is_active());
-        take(jogs, JogStop{target});
+        jogs.take(JogStop{target});
         run(jogs, target, 500);
         EXPECT_FALSE(jog_is_active());
     }
@@ -221,48 +220,55 @@ TEST(JogsPart, AJointIsInPositionUnlessItIsJogged) {
     Jogs jogs = make();
     const auto in_position = [&] {
         Outputs out;
-        settle(jogs, {});
-        fill(jogs, Mode::FREE, {}, out);
+        jogs.settle({});
+        jogs.fill(Mode::FREE, {}, out);
         return std::pair(out.status.joint[0].isInPosition, out.status.joint[1].isInPosition);
     };
     EXPECT_EQ(in_position(), std::pair(true, true));
-    ASSERT_EQ(take(jogs, JogContinuous{JOINT, 5}, free_mode()).reason, Reason::NONE);
+    ASSERT_EQ(jogs.take(JogContinuous{JOINT, 5}, free_mode()).reason, Reason::NONE);
     run(jogs, JOINT, 20);
     EXPECT_EQ(in_position(), std::pair(false, true));
-    take(jogs, JogStop{JOINT});
+    jogs.take(JogStop{JOINT});
     run(jogs, JOINT, 500);
     EXPECT_EQ(in_position(), std::pair(true, true));
 }
 
 TEST(JogsPart, JogsStopWithinTheirLimitsOrAtOnce) {
     Jogs jogs = make();
-    take(jogs, JogContinuous{JOINT, 50}, free_mode());
+    jogs.take(JogContinuous{JOINT, 50}, free_mode());
     run(jogs, JOINT, 50);
     Jogs clone = jogs;
-    stop(jogs);
+    jogs.stop();
     run(jogs, JOINT, 1);
-    EXPECT_GT(jogs.at(JOINT).planner.velocity, 20);
-    stop_at_once(clone);
-    EXPECT_EQ(clone.at(JOINT).planner.velocity, 0);
-    EXPECT_TRUE(areJointsAtRest(clone));
-    EXPECT_FALSE(areJointsAtRest(jogs));
+    EXPECT_GT(jogs.at(JOINT).motion().velocity, 20);
+    clone.stop_at_once();
+    EXPECT_EQ(clone.at(JOINT).motion().velocity, 0);
+    EXPECT_TRUE(clone.areJointsAtRest());
+    EXPECT_FALSE(jogs.areJointsAtRest());
 }
 
 TEST(JogsPart, AxesAreJoggedInTeleopModeOnly) {
     Jogs jogs = make();
-    JogSituation s = free_mode();
-    EXPECT_EQ(check_axis_jog(jogs, 0, 5, s), Reason::WRONG_MODE);
-    EXPECT_EQ(check_axis_jog(jogs, 0, 0, s), Reason::NONE) << "it stops";
-    s.mode = Mode::TELEOP;
-    EXPECT_EQ(check_axis_jog(jogs, 0, NAN, s), Reason::NOT_A_NUMBER);
-    EXPECT_EQ(check_axis_jog(jogs, 0, 5, s), Reason::NONE);
-    jog_axis(jogs, 0, 5, s);
-    limit_axis(jogs.at(AXIS), 100, 0.5);
-    EXPECT_EQ(jogs.at(AXIS).planner.max_velocity, 2.5);
+    JogSituation situations[MAX_AXES];
+    const auto jog = [&](double velocity, Mode mode) {
+        for (JogSituation &s : situations) {
+            s = free_mode();
+            s.mode = mode;
+        }
+        SetTeleopVector command;
+        command.velocity[0] = velocity;
+        return jogs.take(command, situations).reason;
+    };
+    EXPECT_EQ(jog(5, Mode::FREE), Reason::WRONG_MODE);
+    EXPECT_EQ(jog(0, Mode::FREE), Reason::NONE) << "it stops";
+    EXPECT_EQ(jog(NAN, Mode::TELEOP), Reason::NOT_A_NUMBER);
+    EXPECT_EQ(jog(5, Mode::TELEOP), Reason::NONE);
+    jogs.at(AXIS).limit(100, 0.5);
+    EXPECT_EQ(jogs.at(AXIS).motion().max_velocity, 2.5);
     run(jogs, AXIS, 100);
-    jog_axis(jogs, 0, 0, s);
+    EXPECT_EQ(jog(0, Mode::TELEOP), Reason::NONE);
     run(jogs, AXIS, 100);
-    EXPECT_TRUE(areAxesAtRest(jogs));
+    EXPECT_TRUE(jogs.areAxesAtRest());
 }
 
 TEST(JogsPart, HomingMovesAJointNoFasterThanItCan) {
@@ -271,12 +277,12 @@ TEST(JogsPart, HomingMovesAJointNoFasterThanItCan) {
     command.move = homing::Move::BY;
     command.value = -4;
     command.velocity = 1000;
-    home_joint(jogs.at(JOINT), command, {50, 500, 900});
-    EXPECT_EQ(jogs.at(JOINT).wanted.velocity, 50);
-    EXPECT_EQ(jogs.at(JOINT).planner.target, -4);
-    EXPECT_EQ(jogs.at(JOINT).planner.max_jerk, 0);
-    renumber(jogs.at(JOINT), 6, 6);
-    EXPECT_EQ(jogs.at(JOINT).planner.target, 2);
+    jogs.at(JOINT).home(command, {50, 500, 900});
+    EXPECT_EQ(jogs.at(JOINT).wanted().velocity, 50);
+    EXPECT_EQ(jogs.at(JOINT).motion().target, -4);
+    EXPECT_EQ(jogs.at(JOINT).motion().max_jerk, 0);
+    jogs.at(JOINT).renumber(6, 6);
+    EXPECT_EQ(jogs.at(JOINT).motion().target, 2);
 }
 
 /// Joint 0 is X cos C + Y sin C.
@@ -361,19 +367,19 @@ TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
     geometry::Pose pose;
     pose[0] = 39;  // C swings this towards Y and on to -39
     pose[1] = 15;
-    reset_axes(jogs, pose);
+    jogs.reset_axes(pose);
     JogSituation s = free_mode();
     s.mode = Mode::TELEOP;
-    s.most = {1000, 10000, 0};
+    s.limits = {1000, 10000, 0};
     s.range = {-1e9, 1e9};
     const JogTarget c{false, geometry::AXIS_C};
     ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kinematics::Status::OK);
-    ASSERT_EQ(take(jogs, JogContinuous{c, 90}, s).reason, Reason::NONE);
+    ASSERT_EQ(jogs.take(JogContinuous{c, 90}, s).reason, Reason::NONE);
     int told = 0;
     for (int n = 0; n < 5000; ++n) {
-        const TeleopStop stopped = step_teleop(jogs, machine);
+        const TeleopStop stopped = jogs.step_teleop(machine);
         told += stopped.isNew ? 1 : 0;
-        pose[geometry::AXIS_C] = jogs.at(c).planner.position;
+        pose[geometry::AXIS_C] = jogs.at(c).motion().position;
         const auto last = machine.joint_positions;
         ASSERT_EQ(table.inverse(pose, machine.joint_positions.data()), kinematics::Status::OK);
         for (std::size_t j = 0; j < 3; ++j) {
@@ -382,7 +388,7 @@ TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
         }
     }
     EXPECT_EQ(told, 1);
-    EXPECT_TRUE(jogs.at(c).planner.isAtRest());
+    EXPECT_TRUE(jogs.at(c).isAtRest());
     EXPECT_GT(std::abs(pose[geometry::AXIS_C]), 0.01) << "it did move";
 }
 

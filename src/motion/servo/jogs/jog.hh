@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The jog of one joint or axis. Homing moves joints with it, too.
+#pragma once
+
+#include <cstdint>
+
+#include "motion/homing/homing.hh"
+#include "motion/interface/command.hh"
+#include "motion/interface/limits.hh"
+#include "motion/servo/io.hh"
+#include "trajectory/follow/axis_motion.hh"
+
+namespace mw::motion {
+
+/// Source of a jog.
+enum class JogSource : std::uint8_t { NONE, KEYBOARD, WHEEL };
+
+/// Time after which a continuous jog ends if it is not renewed.
+struct JogLease {
+    std::int64_t length_ns = 0, end_ns = 0;
+    bool isForward = true;  ///< of the jog that it belongs to
+};
+
+/// Conditions and limits of a jog of one joint or axis.
+struct JogSituation {
+    bool isReady = false;  ///< machine on and not stopping
+    Mode mode = Mode::FREE;
+    bool isHoming = false, isInhibited = false;
+    bool isMovable = false;        ///< the joint is active; a joint moves the axis
+    bool isSynchronised = false;   ///< a joint that homes with others is not jogged alone
+    bool isDriven = false;         ///< by a pin
+    bool isLocked = false;         ///< a lock is opened for the jog
+    bool isShared = false;         ///< an axis of a machine whose joints are not axes
+    bool isBesideIndexer = false;  ///< something else moves, or one of the two is locked
+    bool isOnPosLimit = false, isOnNegLimit = false;
+    JogLimits limits;
+    JogRange range;
+    std::int64_t time_ns = 0;  ///< now
+};
+
+/// A checked request of a jog.
+struct JogMove {
+    double position = 0, velocity = 0;
+    JogSource source = JogSource::NONE;
+};
+
+class alignas(64) Jog {
+  public:
+    /// Position, speed, target and current limits.
+    const trajectory::AxisMotion &motion() const noexcept { return motion_; }
+    bool isAtRest() const noexcept { return motion_.isAtRest(); }
+    JogSource source() const noexcept { return source_; }
+    /// Requested limits, before the override and the joints reduce them.
+    const JogLimits &wanted() const noexcept { return wanted_; }
+
+    /// Begins a jog; rejects a target outside the range.
+    Reason start(const JogMove &move, const JogSituation &situation) noexcept;
+    /// Another speed for a jog that keeps its target, so a jog that is stopped at a limit stays there.
+    void renew(double velocity, const JogSituation &situation) noexcept;
+    void begin_lease(double lease_s, bool isForward, std::int64_t time_ns) noexcept;
+    const JogLease &lease() const noexcept { return lease_; }
+    /// True while the jog has a source; a jog that has stopped loses it.
+    bool update_source() noexcept;
+    void forget_source() noexcept { source_ = JogSource::NONE; }
+
+    /// Counts of the wheel since the last cycle that are to move something; 0 for none.
+    double turned(const WheelInput &wheel) noexcept;
+    void set_wheel_counts(std::int32_t counts) noexcept { wheel_counts_ = counts; }
+    /// A jog by a wheel accelerates with a part of the limit.
+    void reduce_acceleration(double fraction, bool isShared) noexcept;
+
+    /// Stops with the full acceleration.
+    void brake() noexcept;
+    /// Stops with the current limits.
+    void stop() noexcept { motion_.stop(); }
+    /// Stops in this cycle, without the limits of the drives.
+    void stop_at_once() noexcept { motion_.reset(motion_.position); }
+    /// After a change of the limits: ends at the end of the range; brakes if it moves away from the range.
+    void keep_within(const JogRange &range) noexcept;
+    /// Stopped, at another position.
+    void reset(double position) noexcept { motion_.reset(position); }
+    /// Changes the position without motion; the rest of the move becomes longer by `shift`.
+    void renumber(double position, double shift) noexcept { motion_.renumber(position, shift); }
+    /// Command of homing in this cycle.
+    void home(const homing::JointCommand &command, const JogLimits &limits) noexcept;
+
+    /// The override applies to an axis that moves; on machines whose joints are axes.
+    void limit(double max_velocity, double scale) noexcept;
+    /// Current limits, where the joints reduce them.
+    void set_limits(const JogLimits &limits) noexcept;
+    void step(double period_s) noexcept { motion_.step(period_s); }
+    /// Continues the move of a joint for one period.
+    void step_joint(double max_velocity, double scale, double period_s) noexcept;
+
+  private:
+    JogSource source_ = JogSource::NONE;
+    std::int32_t wheel_counts_ = 0;
+    JogLimits wanted_;
+    double max_velocity_ = UNBOUNDED;  ///< limit of the override
+    double brake_acceleration_ = 0;    ///< of a stop: a wheel cannot reduce it
+    JogLease lease_;
+    trajectory::AxisMotion motion_;
+};
+
+}  // namespace mw::motion
