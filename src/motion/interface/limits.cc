@@ -46,7 +46,7 @@ struct Tightest {
 };
 
 /// External offsets get `ratio` of the axis's limits, paths and jogs the rest.
-void share_with_offset(double ratio, Tightest &all, JogLimits &jog, JogLimits &offset) noexcept {
+void share_with_offset(double ratio, Tightest &all, MotionLimits &jog, MotionLimits &offset) noexcept {
     offset = {ratio * jog.velocity, ratio * jog.acceleration, ratio * jog.jerk};
     const double rest = 1 - ratio;
     jog = {rest * jog.velocity, rest * jog.acceleration, rest * jog.jerk};
@@ -143,12 +143,12 @@ void limit_offsets(const Settings &s, const AxisMap &map, int j, FoldedLimits &o
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         sum += isOffsetOf(map, j, axis, out) ? std::abs(map.linear.slope[at(j)][axis]) : 0.0;
     }
-    const JogLimits &whole = out.joint_jog[at(j)];
+    const MotionLimits &whole = out.joint_jog[at(j)];
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         if (!isOffsetOf(map, j, axis, out)) {
             continue;
         }
-        JogLimits &offset = out.offset[at(axis)];
+        MotionLimits &offset = out.offset[at(axis)];
         const double share = s.get(Parameter::AXIS_OFFSET_RATIO, axis) / sum;
         offset.velocity = std::min(offset.velocity, share * whole.velocity);
         offset.acceleration = std::min(offset.acceleration, share * whole.acceleration);
@@ -164,7 +164,7 @@ void leave_to_paths(const AxisMap &map, int j, FoldedLimits &out) noexcept {
         if (!isOffsetOf(map, j, axis, out)) {
             continue;
         }
-        const JogLimits &offset = out.offset[at(axis)];
+        const MotionLimits &offset = out.offset[at(axis)];
         const double slope = std::abs(map.linear.slope[at(j)][axis]);
         left.velocity[at(j)] -= slope * offset.velocity;
         left.acceleration[at(j)] -= slope * offset.acceleration;

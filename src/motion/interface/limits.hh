@@ -115,7 +115,8 @@ struct TravelRange {
     }
 };
 
-struct JogLimits {
+/// Of a move of one joint, axis or external offset.
+struct MotionLimits {
     double velocity = 0, acceleration = 0;
     double jerk = 0;  ///< 0: none
 };
@@ -139,16 +140,16 @@ struct FoldedLimits {
     std::uint32_t locks = 0;                           ///< bit per joint that has a lock
     std::array<std::uint32_t, MAX_AXES> axis_locks{};  ///< locks that each axis moves
     std::array<double, MAX_JOINTS> travel{};           ///< between the soft limits of a joint, homed or not
-    std::array<JogLimits, MAX_JOINTS> joint_jog{};
-    std::array<JogLimits, MAX_AXES> axis_jog{};
-    std::array<JogLimits, MAX_AXES> offset{};  ///< external ones; velocity 0: the axis has none
+    std::array<MotionLimits, MAX_JOINTS> joint_jog{};
+    std::array<MotionLimits, MAX_AXES> axis_jog{};
+    std::array<MotionLimits, MAX_AXES> offset{};  ///< external ones; velocity 0: the axis has none
 
     /// Locks that are opened for a jog.
     std::uint32_t locks_of(const JogTarget &target) const noexcept {
         return target.isJoint ? locks & 1U << target.index
                               : axis_locks[static_cast<std::size_t>(target.index)];
     }
-    const JogLimits &jog(const JogTarget &target) const noexcept {
+    const MotionLimits &jog(const JogTarget &target) const noexcept {
         const auto i = static_cast<std::size_t>(target.index);
         return target.isJoint ? joint_jog[i] : axis_jog[i];
     }

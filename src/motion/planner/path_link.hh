@@ -29,7 +29,7 @@ struct PathLimits {
     trajectory::JointLimits joints;                           ///< where joints are not axes
     SharedJoints shared;                                      ///< with external offsets
     /// Joint positions before the path: they select the configuration of elbows and wrists
-    std::array<double, MAX_JOINTS> standing{};
+    std::array<double, MAX_JOINTS> start_joints{};
     int side = 0;                        ///< of that configuration (kinematics::Kinematics)
     std::uint32_t position_changes = 0;  ///< count
 };

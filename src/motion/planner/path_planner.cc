@@ -66,8 +66,8 @@ void PathPlanner::follow_controller() noexcept {
         limits_version_ = view_.limits_version;
         if (limits_.position_changes != position_changes_) {
             position_changes_ = limits_.position_changes;
-            end_joints_ = limits_.standing;
-            map_.stand_at(limits_.standing, limits_.side);
+            end_joints_ = limits_.start_joints;
+            map_.stand_at(limits_.start_joints, limits_.side);
         }
         planner_.set_limits(limits_.limits);
         const bool isMapped = kinematics_.identity() == nullptr && kinematics_.isShareable();

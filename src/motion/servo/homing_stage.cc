@@ -9,7 +9,7 @@ namespace mw::motion {
 namespace {
 
 homing::JointInput homing_input(const JointInputs &pins, const Joint &joint, const Jog &jog,
-                                const JogLimits &limits) noexcept {
+                                const MotionLimits &limits) noexcept {
     homing::JointInput out;
     out.isSwitchClosed = pins.isHomeSwitchClosed;
     out.isIndexEnabled = pins.isIndexEnabled;

@@ -157,7 +157,7 @@ void ControllerParts::publish_limits() noexcept {
     out.axes = limits.axes;
     out.joints = limits.path_joints;
     out.shared = offsets.shared();
-    out.standing = joint_start.joints();
+    out.start_joints = joint_start.joints();
     out.side = model.kinematics().side(position.cmd());
     out.position_changes = joint_start.changes();
     out.corner_scale = model.settings().get(Parameter::TRAJ_CORNER_SCALE);

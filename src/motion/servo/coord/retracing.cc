@@ -34,26 +34,26 @@ trajectory::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in)
         }
     };
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        add(changes.step[at(i)], changes.bend[at(i)], limits.acceleration[at(i)], limits.jerk[at(i)]);
+        add(changes.step[at(i)], changes.step_change[at(i)], limits.acceleration[at(i)], limits.jerk[at(i)]);
     }
-    add(std::sqrt(changes.step_xyz2), std::sqrt(changes.bend_xyz2), limits.acceleration[trajectory::XYZ_NORM],
-        limits.jerk[trajectory::XYZ_NORM]);
+    add(std::sqrt(changes.step_xyz2), std::sqrt(changes.step_change_xyz2),
+        limits.acceleration[trajectory::XYZ_NORM], limits.jerk[trajectory::XYZ_NORM]);
     for (int j = 0; j < in.joints; ++j) {
-        add(changes.joint_step[at(j)], changes.joint_bend[at(j)], in.folded.path_joints.acceleration[at(j)],
-            in.folded.path_joints.jerk[at(j)]);
+        add(changes.joint_step[at(j)], changes.joint_step_change[at(j)],
+            in.folded.path_joints.acceleration[at(j)], in.folded.path_joints.jerk[at(j)]);
     }
     return use;
 }
 
 /// True where reverse run is so slow that an immediate stop is within all limits: the path stopped there, and
 /// reverse run has the recorded speeds.
-bool mayStandAtOnce(const Changes &last, const RetraceLimits &limits) noexcept {
+bool mayStopAtOnce(const Changes &last, const RetraceLimits &limits) noexcept {
     // The stop of a step requires the jerk of twice the step and of its second difference.
-    constexpr double STEP_SHARE = 0.25, BEND_SHARE = 0.5;
+    constexpr double STEP_SHARE = 0.25, CHANGE_SHARE = 0.5;
     const double t = limits.period_s;
     const trajectory::Retrace::Use use = use_of(last, limits);
     return use.v_over_a <= STEP_SHARE * t && use.v_over_j <= STEP_SHARE * t * t &&
-           use.a_over_j <= BEND_SHARE * t;
+           use.a_over_j <= CHANGE_SHARE * t;
 }
 
 }  // namespace
@@ -80,17 +80,17 @@ void Retracing::include_changes(const RetraceLimits &limits) noexcept {
 void Retracing::follow_pose(const geometry::Pose &pose) noexcept {
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         const double step = pose[i] - pose_[i];
-        last_.bend[at(i)] = step - last_.step[at(i)];
+        last_.step_change[at(i)] = step - last_.step[at(i)];
         last_.step[at(i)] = step;
     }
     last_.step_xyz2 = square_xyz(last_.step);
-    last_.bend_xyz2 = square_xyz(last_.bend);
+    last_.step_change_xyz2 = square_xyz(last_.step_change);
     pose_ = pose;
 }
 
 bool Retracing::step(geometry::Pose &pose, const RetraceInputs &in, const RetraceLimits &limits) noexcept {
     follow_drops(in.drops);
-    const bool isFirst = !retrace_.isAway() && in.isReverseWanted && !in.isStandingWanted && !in.isStopping;
+    const bool isFirst = !retrace_.isAway() && in.isReverseWanted && !in.isHoldWanted && !in.isStopping;
     if (!retrace_.isAway() && !(isFirst && in.isPathHeld && retrace_.isReady())) [[likely]] {
         return false;
     }
@@ -100,9 +100,9 @@ bool Retracing::step(geometry::Pose &pose, const RetraceInputs &in, const Retrac
         last_ = {};
         stopping_ = false;
     }
-    const bool isStill = in.isStandingWanted || path_left_ || in.isStopping;
+    const bool isStill = in.isHoldWanted || path_left_ || in.isStopping;
     // With ordinary braking it would move at the recorded speed of the path, visibly after the stop.
-    if (isStill && !stopping_ && retrace_.isMoving() && mayStandAtOnce(last_, limits)) {
+    if (isStill && !stopping_ && retrace_.isMoving() && mayStopAtOnce(last_, limits)) {
         retrace_.stand();
     }
     stopping_ = isStill;
@@ -125,17 +125,17 @@ void Retracing::record(const geometry::Pose &pose, const RetraceLimits &limits) 
         changes_ = {};
         last_step_ = {};
     } else {
-        alignas(16) std::array<double, Changes::PADDED> step, bend;  // NOLINT: every element is set
+        alignas(16) std::array<double, Changes::PADDED> step, step_change;  // NOLINT: every element is set
 #pragma GCC unroll 5
         for (std::size_t i = 0; i < Changes::PADDED; ++i) {
             step[i] = position[i] - last_position_[i];
-            bend[i] = step[i] - last_step_[i];
+            step_change[i] = step[i] - last_step_[i];
             last_step_[i] = step[i];
             changes_.step[i] = std::max(changes_.step[i], std::abs(step[i]));
-            changes_.bend[i] = std::max(changes_.bend[i], std::abs(bend[i]));
+            changes_.step_change[i] = std::max(changes_.step_change[i], std::abs(step_change[i]));
         }
         changes_.step_xyz2 = std::max(changes_.step_xyz2, square_xyz(step));
-        changes_.bend_xyz2 = std::max(changes_.bend_xyz2, square_xyz(bend));
+        changes_.step_change_xyz2 = std::max(changes_.step_change_xyz2, square_xyz(step_change));
     }
     last_position_ = position;
     if (retrace_.record(pose)) [[unlikely]] {
@@ -143,14 +143,14 @@ void Retracing::record(const geometry::Pose &pose, const RetraceLimits &limits) 
     }
 }
 
-void Retracing::record_joint(int j, double step, double bend) noexcept {
+void Retracing::record_joint(int j, double step, double step_change) noexcept {
     changes_.joint_step[at(j)] = std::max(changes_.joint_step[at(j)], std::abs(step));
-    changes_.joint_bend[at(j)] = std::max(changes_.joint_bend[at(j)], std::abs(bend));
+    changes_.joint_step_change[at(j)] = std::max(changes_.joint_step_change[at(j)], std::abs(step_change));
 }
 
-void Retracing::follow_joint(int j, double step, double bend) noexcept {
+void Retracing::follow_joint(int j, double step, double step_change) noexcept {
     last_.joint_step[at(j)] = step;
-    last_.joint_bend[at(j)] = bend;
+    last_.joint_step_change[at(j)] = step_change;
 }
 
 }  // namespace mw::motion

@@ -13,17 +13,17 @@
 namespace mw::motion {
 
 /// Largest changes of coordinates since they were last compared with the limits: per cycle (`step`), and from
-/// one cycle to the next (`bend`).
+/// one cycle to the next (`step_change`).
 struct Changes {
     static constexpr std::size_t PADDED = 10;  ///< of the axes, for instructions that take two at once
-    alignas(16) std::array<double, PADDED> step{}, bend{};
-    double step_xyz2 = 0, bend_xyz2 = 0;  ///< squares of the norms of X Y Z
-    std::array<double, MAX_JOINTS> joint_step{}, joint_bend{};
+    alignas(16) std::array<double, PADDED> step{}, step_change{};
+    double step_xyz2 = 0, step_change_xyz2 = 0;  ///< squares of the norms of X Y Z
+    std::array<double, MAX_JOINTS> joint_step{}, joint_step_change{};
 };
 
 struct RetraceInputs {
     std::uint64_t drops = 0;  ///< of the executor
-    bool isReverseWanted = false, isStandingWanted = false, isStopping = false;
+    bool isReverseWanted = false, isHoldWanted = false, isStopping = false;
     bool isPathHeld = false;  ///< the path is paused and not at its end
     double rate = 0;          ///< of the commanded speed
 };
@@ -41,13 +41,13 @@ class Retracing {
     bool step(geometry::Pose &pose, const RetraceInputs &in, const RetraceLimits &limits) noexcept;
     /// Where joints are not axes, in reverse run before step(): the change of joint `j` in the last cycle,
     /// and the change of that change.
-    void follow_joint(int j, double step, double bend) noexcept;
+    void follow_joint(int j, double step, double step_change) noexcept;
 
     /// Records a commanded pose of the path for reverse run.
     void record(const geometry::Pose &pose, const RetraceLimits &limits) noexcept;
     /// Where joints are not axes, before record(): the change of joint `j` in the last cycle, and of that
     /// change.
-    void record_joint(int j, double step, double bend) noexcept;
+    void record_joint(int j, double step, double step_change) noexcept;
     /// Forgets the recorded path.
     void clear() noexcept { retrace_.clear(); }
 

@@ -9,7 +9,7 @@ namespace {
 using Following = ExtraJoints::Following;
 
 trajectory::FollowLimits limits_of(const FoldedLimits &limits, std::size_t n) noexcept {
-    const JogLimits &joint = limits.joint_jog[n];
+    const MotionLimits &joint = limits.joint_jog[n];
     return {joint.velocity, joint.acceleration, joint.jerk, limits.joints.low[n], limits.joints.high[n]};
 }
 

@@ -107,7 +107,7 @@ void Jog::keep_within(const JogRange &range) noexcept {
     }
 }
 
-void Jog::home(const homing::JointCommand &command, const JogLimits &limits) noexcept {
+void Jog::home(const homing::JointCommand &command, const MotionLimits &limits) noexcept {
     if (command.move == homing::Move::NONE) {
         return;
     }
@@ -130,7 +130,7 @@ void Jog::limit(double max_velocity, double scale) noexcept {
     }
 }
 
-void Jog::set_limits(const JogLimits &limits) noexcept {
+void Jog::set_limits(const MotionLimits &limits) noexcept {
     motion_.max_velocity = limits.velocity;
     motion_.max_acceleration = limits.acceleration;
     motion_.max_jerk = limits.jerk;

@@ -33,7 +33,7 @@ struct JogSituation {
     bool isShared = false;         ///< an axis of a machine whose joints are not axes
     bool isBesideIndexer = false;  ///< something else moves, or one of the two is locked
     bool isOnPosLimit = false, isOnNegLimit = false;
-    JogLimits limits;
+    MotionLimits limits;
     JogRange range;
     std::int64_t time_ns = 0;  ///< now
 };
@@ -51,7 +51,7 @@ class alignas(64) Jog {
     bool isAtRest() const noexcept { return motion_.isAtRest(); }
     JogSource source() const noexcept { return source_; }
     /// Requested limits, before the override and the joints reduce them.
-    const JogLimits &wanted() const noexcept { return wanted_; }
+    const MotionLimits &wanted() const noexcept { return wanted_; }
 
     /// Begins a jog; rejects a target outside the range.
     Reason start(const JogMove &move, const JogSituation &situation) noexcept;
@@ -82,12 +82,12 @@ class alignas(64) Jog {
     /// Changes the position without motion; the rest of the move becomes longer by `shift`.
     void renumber(double position, double shift) noexcept { motion_.renumber(position, shift); }
     /// Command of homing in this cycle.
-    void home(const homing::JointCommand &command, const JogLimits &limits) noexcept;
+    void home(const homing::JointCommand &command, const MotionLimits &limits) noexcept;
 
     /// The override applies to an axis that moves; on machines whose joints are axes.
     void limit(double max_velocity, double scale) noexcept;
     /// Current limits, where the joints reduce them.
-    void set_limits(const JogLimits &limits) noexcept;
+    void set_limits(const MotionLimits &limits) noexcept;
     void step(double period_s) noexcept { motion_.step(period_s); }
     /// Continues the move of a joint for one period.
     void step_joint(double max_velocity, double scale, double period_s) noexcept;
@@ -95,7 +95,7 @@ class alignas(64) Jog {
   private:
     JogSource source_ = JogSource::NONE;
     std::int32_t wheel_counts_ = 0;
-    JogLimits wanted_;
+    MotionLimits wanted_;
     double max_velocity_ = UNBOUNDED;  ///< limit of the override
     double brake_acceleration_ = 0;    ///< of a stop: a wheel cannot reduce it
     JogLease lease_;

@@ -20,8 +20,8 @@ struct Margin {
 constexpr Margin ALLOWED{1.08, 1.0 + 2e-6}, CHECKED{1.05, 1.0 + 1e-6};
 /// A second derivative below this is rounding.
 constexpr double LEAST_CURVE = 1e-6;
-/// Parts of the acceleration and the jerk of a joint that curves may take at the highest speed: of the jerk
-/// one for the speed with the acceleration, and one for the speed alone.
+/// Parts of the acceleration and the jerk of a joint that curves may use at the maximum speed. The jerk has
+/// one part for the speed with the acceleration, and one for the speed alone.
 constexpr double CURVE_SHARE = 0.5, SWING_SHARE = 0.25, TURN_SHARE = 0.25;
 constexpr double NONE = std::numeric_limits<double>::infinity();
 

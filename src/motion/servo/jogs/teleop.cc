@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Jogs of axes on machines whose joints are not axes. After every cycle the axes have a stop in which no
-// joint exceeds a limit: a cycle that would end without one is not begun, and the axes brake along the stop
-// that they have.
+// joint exceeds a limit. If a cycle would end without one, the axes brake along their present stop instead.
 #include <algorithm>
 #include <cmath>
 
@@ -24,17 +23,17 @@ std::uint32_t bit(int axis) noexcept {
     return 1U << axis;
 }
 
-/// The highest speed of a stop from here: the acceleration has to fall to 0 first.
+/// Maximum speed of a stop from here: the acceleration must fall to 0 first.
 double fastest_of(const trajectory::AxisMotion &p) noexcept {
     const trajectory::MotionState state{0, p.velocity, p.acceleration};
     const double settled = p.max_jerk > 0 ? trajectory::settled_speed(state, p.max_jerk) : 0.0;
     return std::max(std::abs(p.velocity), std::abs(settled));
 }
 
-struct PlaceRange {
+struct PositionRange {
     double low = 0, high = 0;
 
-    bool has(const PlaceRange &other) const noexcept {
+    bool contains(const PositionRange &other) const noexcept {
         return other.low >= low - POSITION_ROUNDING && other.high <= high + POSITION_ROUNDING;
     }
 };
@@ -59,7 +58,7 @@ class TeleopCycle {
                 continue;
             }
             load_.axes[at(load_.count++)] = i;
-            wanting_ |= bit(i);
+            requested_ |= bit(i);
             const bool isMoving = p.velocity != 0.0 || p.acceleration != 0.0;
             moving_ |= isMoving ? bit(i) : 0U;
         }
@@ -67,7 +66,7 @@ class TeleopCycle {
 
     /// `wasStopped`: jogs were stopped before, and reported.
     TeleopStop run(bool wasStopped) noexcept {
-        if (wanting_ == 0) {
+        if (requested_ == 0) {
             return {};
         }
         const Attempt attempt = begin();
@@ -87,19 +86,19 @@ class TeleopCycle {
     Jog &jog(int i) noexcept { return jogs_[at(load_.axes[at(i)])]; }
     const Jog &jog(int i) const noexcept { return jogs_[at(load_.axes[at(i)])]; }
 
-    /// All axes with their share of the joints. Else those that move, and the others wait: with the same
-    /// share, to make room for the others, with what they can have alone, or with the limits in force.
+    /// Tries all requested axes with their share of the joint limits. If that leaves no stop, the moving axes
+    /// alone: with the same share, with what the joints allow them alone, then with their current limits.
     Attempt begin() noexcept {
-        if (!look()) {
+        if (!examine()) {
             return {Attempt::Kind::JOINT_LIMIT, -1};
         }
-        const AxisDemand shared = allowed_demand(m_, ahead_, wanting_, wanted());
-        Attempt attempt = attempt_with(shared, wanting_);
+        const AxisDemand shared = allowed_demand(m_, ahead_, requested_, wanted());
+        Attempt attempt = attempt_with(shared, requested_);
         if (attempt.kind == Attempt::Kind::ACCEPTED || moving_ == 0) {
             return attempt;
         }
         AxisDemand own = shared;
-        if (moving_ != wanting_) {
+        if (moving_ != requested_) {
             attempt = attempt_with(shared, moving_);
             if (attempt.kind == Attempt::Kind::ACCEPTED) {
                 return attempt;
@@ -108,7 +107,7 @@ class TeleopCycle {
             attempt = attempt_with(own, moving_);
         }
         if (attempt.kind != Attempt::Kind::ACCEPTED) {
-            attempt = attempt_with(in_force(own), moving_);
+            attempt = attempt_with(with_current_limits(own), moving_);
         }
         return attempt;
     }
@@ -125,7 +124,7 @@ class TeleopCycle {
         return out;
     }
     /// The acceleration and jerk of the last cycle.
-    AxisDemand in_force(const AxisDemand &speeds) const noexcept {
+    AxisDemand with_current_limits(const AxisDemand &speeds) const noexcept {
         AxisDemand out = speeds;
         for (int i = 0; i < load_.count; ++i) {
             out.acceleration[at(i)] = jog(i).motion().max_acceleration;
@@ -134,8 +133,9 @@ class TeleopCycle {
         return out;
     }
 
-    /// The load up to the place where the axes can stop, and beyond it; false without a solution up to there.
-    bool look() noexcept {
+    /// Calculates the load up to the stop of the axes, and past it. False if the kinematics has no solution
+    /// up to the stop.
+    bool examine() noexcept {
         double square = 0;
         for (int i = 0; i < load_.count; ++i) {
             load_.direction[at(i)] = jog(i).wanted().velocity;
@@ -148,8 +148,8 @@ class TeleopCycle {
             load_.direction[at(i)] *= p.target < p.position ? -1.0 : 1.0;
             load_.direction[at(i)] /= square > 0 ? std::sqrt(square) : 1.0;
             const double more = 2.0 * p.velocity * m_.period_s;
-            const double way = p.stopping().distance + more;
-            PlaceRange &near = near_[at(i)];
+            const double distance = p.stopping().distance + more;
+            PositionRange &near = near_[at(i)];
             near = {here_[axis], here_[axis]};
             p.add_stop(near.low, near.high);
             near.low += std::min(more, 0.0);
@@ -157,7 +157,7 @@ class TeleopCycle {
             double low = here_[axis];
             double high = here_[axis];
             p.add_reach(low, high);
-            far[axis] = std::clamp(here_[axis] + 2.0 * way, low, high) +
+            far[axis] = std::clamp(here_[axis] + 2.0 * distance, low, high) +
                         LEAST_WINDOW * (p.target < p.position ? -1.0 : 1.0);
             far_[at(i)] = {std::min(near.low, far[axis]), std::max(near.high, far[axis])};
         }
@@ -173,13 +173,14 @@ class TeleopCycle {
         return isFound;
     }
 
-    /// Adds the load along the stop of the axes, and one cycle past it; false without a solution there.
+    /// Adds the load along the stop of the axes and one cycle past it. False if the kinematics has no
+    /// solution there.
     bool add_stop(std::uint32_t members, JointLoad &load) const noexcept {
-        constexpr int PLACES = 3;
+        constexpr int SAMPLES = 3;
         const Stop stop = stop_of(members);
         bool isFound = true;
-        for (int n = 1; n <= PLACES && isFound; ++n) {
-            geometry::Pose pose = pose_of(stop, stop.longest_s * n / PLACES);
+        for (int n = 1; n <= SAMPLES && isFound; ++n) {
+            geometry::Pose pose = pose_of(stop, stop.longest_s * n / SAMPLES);
             for (int i = 0; i < load_.count; ++i) {
                 const int axis = load_.axes[at(i)];
                 pose[axis] += 2.0 * motion(axis).velocity * m_.period_s;
@@ -189,7 +190,7 @@ class TeleopCycle {
         return isFound;
     }
 
-    /// Begins the cycle with these limits if it leaves the axes of `members` a stop.
+    /// Begins the cycle with these limits if the axes of `members` have a stop after it.
     Attempt attempt_with(const AxisDemand &limits, std::uint32_t members) noexcept {
         const AxisJogs before = jogs_;
         AxisDemand now = limits;
@@ -208,19 +209,19 @@ class TeleopCycle {
             const trajectory::MotionState begin{0, p.velocity, p.acceleration};
             jog(i).step(m_.period_s);
             now.velocity[at(i)] = std::max(std::abs(begin.v), fastest_of(p));
-            // It is faster within the cycle where its acceleration changes sign.
+            // Where the acceleration changes sign, the speed has its maximum within the cycle.
             const bool isPeak = begin.a * p.acceleration < 0;
             now.velocity[at(i)] += isPeak ? p.max_jerk * m_.period_s * m_.period_s / 8 : 0.0;
             now.acceleration[at(i)] = std::max(now.acceleration[at(i)], std::abs(p.acceleration));
-            // Not farther than it could come before: it does not pass its target.
+            // Its reach may not grow: it does not pass its target.
             double next_low = p.position;
             double next_high = p.position;
             p.add_reach(next_low, next_high);
             hasStop = hasStop && next_low >= low - POSITION_ROUNDING && next_high <= high + POSITION_ROUNDING;
-            PlaceRange stop{p.position, p.position};
+            PositionRange stop{p.position, p.position};
             p.add_stop(stop.low, stop.high);
-            isNear = isNear && near_[at(i)].has(stop);
-            hasStop = hasStop && (isNear || (isFarKnown_ && far_[at(i)].has(stop)));
+            isNear = isNear && near_[at(i)].contains(stop);
+            hasStop = hasStop && (isNear || (isFarKnown_ && far_[at(i)].contains(stop)));
         }
         Attempt out;
         const JointLoad &known = isNear ? load_ : ahead_;
@@ -247,23 +248,23 @@ class TeleopCycle {
 
     /// The joints stay within their soft limits along the stop of the axes.
     Attempt examine_stop(std::uint32_t members) const noexcept {
-        constexpr int PLACES = 16;
+        constexpr int SAMPLES = 16;
         const Stop stop = stop_of(members);
-        const double step_s = stop.longest_s / PLACES;
+        const double step_s = stop.longest_s / SAMPLES;
         JointsAt before = m_.joint_positions;
         JointsAt here{};
         JointsAt next{};
         if (!find_joints(m_, pose_of(stop, 0), here)) {
             return {Attempt::Kind::JOINT_LIMIT, -1};
         }
-        for (int n = 0; n <= PLACES; ++n) {
+        for (int n = 0; n <= SAMPLES; ++n) {
             if (!find_joints(m_, pose_of(stop, step_s * (n + 1)), next)) {
                 return {Attempt::Kind::JOINT_LIMIT, -1};
             }
             for (int j = 0; j < m_.num_joints; ++j) {
-                // Where it turns, a joint goes farther than the places show by at most a dt^2 / 8.
-                const bool isTurn = (here[at(j)] - before[at(j)]) * (next[at(j)] - here[at(j)]) < 0;
-                const double more = isTurn ? m_.joints.acceleration[at(j)] * step_s * step_s / 8 : 0.0;
+                // Where a joint reverses, it goes at most a dt^2 / 8 farther than the samples show.
+                const bool isReversal = (here[at(j)] - before[at(j)]) * (next[at(j)] - here[at(j)]) < 0;
+                const double more = isReversal ? m_.joints.acceleration[at(j)] * step_s * step_s / 8 : 0.0;
                 if (isOutside(j, here[at(j)], more)) {
                     return {Attempt::Kind::JOINT_LIMIT, j};
                 }
@@ -282,7 +283,7 @@ class TeleopCycle {
     bool isMember(std::uint32_t members, int i) const noexcept {
         return (members & bit(load_.axes[at(i)])) != 0;
     }
-    /// The stops of the axes of `members`, from their present states.
+    /// Stops of the axes of `members` from their current states.
     struct Stop {
         std::uint32_t members = 0;
         std::array<trajectory::SpeedChange, MAX_AXES> axis{};
@@ -327,12 +328,13 @@ class TeleopCycle {
     AxisJogs &jogs_;
     const TeleopMachine &m_;
     geometry::Pose here_;
-    std::uint32_t wanting_ = 0;  ///< bit per axis that is not at its target
+    std::uint32_t requested_ = 0;  ///< bit per axis that is not at its target
     std::uint32_t moving_ = 0;
     JointLoad load_;   ///< up to the stop
     JointLoad ahead_;  ///< and past it
     bool isFarKnown_ = false;
-    std::array<PlaceRange, MAX_AXES> near_{}, far_{};  ///< places of the axes for which these are known
+    std::array<PositionRange, MAX_AXES> near_{},
+        far_{};  ///< positions of the axes for which these loads hold
 };
 
 }  // namespace

@@ -82,7 +82,7 @@ void ExternalOffsets::step(const OffsetInputs &in) noexcept {
         available = isShared ? both(available, range_in_joints(in, all, i)) : available;
         trajectory::AxisMotion &p = offset.planner;
         if (in.isHonoured) {
-            const JogLimits &most = in.limits.offset[at(i)];
+            const MotionLimits &most = in.limits.offset[at(i)];
             if (most.velocity > 0) {
                 p.max_velocity = most.velocity;
                 p.max_acceleration = most.acceleration;

@@ -36,8 +36,8 @@ struct SpindleReversal {
     double seconds = 0;     ///< since the command
 };
 
-void watch(SpindleReversal &turn_back, const SpindleMotion &now) noexcept;
+void watch(SpindleReversal &reversal, const SpindleMotion &now) noexcept;
 /// `given_ramp`: value of the INI file [turns/s^2], 0 for none.
-trajectory::SpindleBrakings brakings_of(const SpindleReversal &turn_back, double given_ramp) noexcept;
+trajectory::SpindleBrakings brakings_of(const SpindleReversal &reversal, double given_ramp) noexcept;
 
 }  // namespace mw::motion

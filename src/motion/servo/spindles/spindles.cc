@@ -213,7 +213,7 @@ std::uint32_t Spindles::step(const Inputs &in, const Settings &settings, const S
         s.out_rpm = pins.isInhibited || !s.isOn ? 0.0 : rpm;
         s.commanded_rpm = within_range(settings, n, s.speed_rpm * s.tap_factor);
         const CountedSpindle &counted = cycle.counted[index(n)];
-        watch(s.turn_back,
+        watch(s.reversal,
               {s.out_rpm / 60.0, s.turns, counted.turns_per_s, counted.step, cycle.period_s, s.speed_rps});
         faults |= hasOrientFailed(s, pins) ? 1U << n : 0U;
     }
@@ -221,7 +221,7 @@ std::uint32_t Spindles::step(const Inputs &in, const Settings &settings, const S
 }
 
 trajectory::SpindleBrakings Spindles::brakings(int n, const Settings &settings) const noexcept {
-    return motion::brakings_of((*this)[n].turn_back, settings.get(Parameter::SPINDLE_RAMP, n) / 60.0);
+    return motion::brakings_of((*this)[n].reversal, settings.get(Parameter::SPINDLE_RAMP, n) / 60.0);
 }
 
 bool isReversible(const Settings &settings, int n) noexcept {

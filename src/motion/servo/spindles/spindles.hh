@@ -28,7 +28,7 @@ struct Spindle {
     double tap_factor = 1;  ///< factor of the speed during a tap
     double tap_scale = 1;   ///< override at the start of the tap
     bool isTapping = false;
-    SpindleReversal turn_back;
+    SpindleReversal reversal;
 };
 
 /// Request of an active tap to its spindle.
