@@ -28,7 +28,7 @@ ORDER = {
     'messages': ('declarations', 'legacy', 'mailbox', 'client'),
     'hal': ('include', 'sdk', 'core', 'capi', 'host', 'ini', 'halcompile', 'script', 'tcl', 'tools'),
     'hal/tools': ('stream', 'view', 'programs'),
-    'trajectory': ('path', 'curve', 'profile', 'follow', 'plan', 'timing', 'trial'),
+    'trajectory': ('path', 'curve', 'profile', 'follow', 'plan'),
     'gcode': ('syntax', 'tools', 'canon', 'interpreter', 'python_host', 'analysis'),
     'gcode/interpreter': ('expressions', 'scripts', 'codes', 'flow'),
     'motion': ('homing', 'interface', 'planner', 'servo', 'hal'),

@@ -15,6 +15,7 @@
 #include "trajectory/curve/exact_builder.hh"
 #include "trajectory/follow/executor.hh"
 #include "trajectory/planner.hh"
+#include "trajectory/profile/acceleration_profile.hh"
 #include "trajectory/profile/profile.hh"
 
 namespace mw::bench {
@@ -31,6 +32,7 @@ struct Options {
     bool isRate = false;
     bool isBound = false;
     bool third_order = false;
+    bool second_order = false;
     std::string trace, only;
     double jerk_share = 1;  ///< of the jerk limits of all kinds
 
@@ -40,8 +42,9 @@ struct Options {
         line.flag("--jerk", "with jerk limits", isJerkLimited);
         line.flag("--fast", "leave the deviation out", isFast);
         line.flag("--third-order", "with the third-order profile instead of the planner", third_order);
+        line.flag("--second-order", "with the profile within velocity and acceleration instead", second_order);
         line.flag("--bound", "the bound beside each", isBound);
-        line.flag("--rate", "planning alone, merging off, on 0.01 mm blocks in nine coordinates", isRate);
+        line.flag("--rate", "planning alone, on 0.01 mm blocks in nine coordinates", isRate);
         line.text("--trace", "FOLDER", "write the samples of each kind there", trace);
         line.text("--only", "WORD", "the kinds with this in their name", only);
         line.number("--jerk-share", "PART", "this part of the jerk limits (default 1)", jerk_share, 1e-6,
@@ -89,24 +92,23 @@ struct Run {
 };
 
 /// The planner receives as much of the program as its queue can hold.
-Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
+Run drive(const Program &program, bool isJerkLimited) {
     Run run;
     auto store = std::make_unique<trajectory::PathStore>();
     trajectory::Executor executor(*store, T);
     auto planner =
-        std::make_unique<trajectory::Planner>(*store, trajectory::PlannerSettings{T, 3, 0.1, isMerging});
+        std::make_unique<trajectory::Planner>(*store, trajectory::PlannerSettings{T});
     planner->set_limits(limits_of(program, isJerkLimited));
     executor.set_position(program.start);
     std::uint64_t cycle = 0;
     executor.step(cycle);
-    planner->begin(program.start, executor.snapshot(),
-                   planner->demand_of(request_of(program, program.moves.front())));
+    planner->begin(program.start, executor.snapshot());
     run.samples.push_back(program.start);
     std::size_t fed = 0;
     for (int n = 0; n < 2000000 && !run.isFinished; ++n) {
         if (n % 5 == 0) {
             const auto begin = std::chrono::steady_clock::now();
-            for (; fed < program.moves.size() && planner->hasRoom(executor.snapshot()); ++fed) {
+            for (; fed < program.moves.size() && planner->hasRoom(); ++fed) {
                 const Pose from = fed == 0 ? program.start : program.moves[fed - 1].end;
                 planner->add(primitive_of(from, program.moves[fed]), request_of(program, program.moves[fed]));
             }
@@ -123,8 +125,9 @@ Run drive(const Program &program, bool isJerkLimited, bool isMerging) {
     return run;
 }
 
-profile::CurveLimits curve_limits_of(const Program &program) {
+profile::CurveLimits curve_limits_of(const Program &program, bool isJerkLimited) {
     profile::CurveLimits limits;
+    limits.has_jerk = isJerkLimited;
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         limits.axes[static_cast<std::size_t>(i)] = {program.max_velocity[i], program.max_acceleration[i],
                                                     program.max_jerk[i]};
@@ -166,7 +169,7 @@ Laid lay_blend(const Program &program) {
 }
 
 /// The programmed path, with stops where its tangent jumps, or at the end of each move.
-Laid lay_exact(const Program &program) {
+Laid lay_exact(const Program &program, bool isJerkLimited) {
     Laid out;
     curve::ExactBuilder builder(WIDEST);
     Pose from = program.start;
@@ -175,7 +178,7 @@ Laid lay_exact(const Program &program) {
         out.feeds.push_back({builder.final_s(), m.feed > 0 ? m.feed : 1e300});
         from = m.end;
     }
-    const profile::CurveLimits limits = curve_limits_of(program);
+    const profile::CurveLimits limits = curve_limits_of(program, isJerkLimited);
     const bool is_stop = program.moves[0].control == geometry::PathMode::EXACT_STOP;
     for (const curve::Seam &seam : builder.seams()) {
         const profile::SpeedCap cap = profile::cap_of(seam, limits, T);
@@ -191,10 +194,10 @@ Laid lay_exact(const Program &program) {
 }
 
 /// Planned in windows of 0.5 s every 50 ms. False if the end was not reached.
-bool drive_run(const profile::Run &run, double from_s, std::vector<profile::TimeCell> &cells) {
+bool drive_run(profile::PathTiming &profile, const profile::Run &run, double from_s,
+               std::vector<profile::TimeCell> &cells) {
     constexpr double COMMIT_S = 0.05;
     constexpr std::size_t LEAST_CELLS = 8;  // behind what is passed on
-    profile::Profile profile({});
     profile.begin(from_s);
     bool is_done = false;
     for (int n = 0; n < 100000 && !is_done; ++n) {
@@ -212,12 +215,12 @@ bool drive_run(const profile::Run &run, double from_s, std::vector<profile::Time
 }
 
 /// The time of fitting and planning counts.
-Run drive_third_order(const Program &program) {
+Run drive_curve(const Program &program, profile::PathTiming &profile, bool isJerkLimited) {
     Run out;
     const auto begin = std::chrono::steady_clock::now();
     const bool is_blend = program.moves[0].control == geometry::PathMode::BLEND;
-    const Laid laid = is_blend ? lay_blend(program) : lay_exact(program);
-    profile::Run run{&laid.spans, &laid.feeds, curve_limits_of(program)};
+    const Laid laid = is_blend ? lay_blend(program) : lay_exact(program, isJerkLimited);
+    profile::Run run{&laid.spans, &laid.feeds, curve_limits_of(program, isJerkLimited)};
     run.caps = &laid.caps;
     run.has_stop = true;
     out.isFinished = true;
@@ -225,7 +228,7 @@ Run drive_third_order(const Program &program) {
     double from_s = 0;
     for (const double stop : laid.stops) {
         run.end_s = stop;
-        out.isFinished = drive_run(run, from_s, cells) && out.isFinished;
+        out.isFinished = drive_run(profile, run, from_s, cells) && out.isFinished;
         from_s = stop;
     }
     out.planning_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -311,8 +314,11 @@ void print_bound(const Options &options, const Program &program, double time_s) 
 }
 
 bool measure(const Options &options, const Program &program) {
-    const Run run = options.third_order ? drive_third_order(program)
-                                        : drive(program, options.isJerkLimited, !options.isRate);
+    profile::Profile third_order({});
+    profile::AccelerationProfile second_order(0.5, T);
+    const Run run = options.third_order    ? drive_curve(program, third_order, true)
+                    : options.second_order ? drive_curve(program, second_order, false)
+                                           : drive(program, options.isJerkLimited);
     testing::LimitChecker checker(axis_limits(program, options.isJerkLimited), T);
     for (const Pose &p : run.samples) {
         checker.sample(p.c.data());

@@ -10,8 +10,6 @@ namespace mw::trajectory {
 namespace {
 
 constexpr std::uint64_t PLANNER_CYCLES = 5;
-constexpr std::uint64_t LATENCY = 3;
-constexpr double HORIZON_S = 0.1;
 constexpr double LONGEST_STAND_S = 5, LONGEST_MOVE_S = 50 * Estimator::DRIVEN_S;
 /// A limit counts as binding from this part of it on.
 constexpr double NEAR = 0.93;
@@ -47,7 +45,7 @@ Estimator::Estimator(const Limits &limits, double period_s, Listener listener)
       period_power_{period_s, period_s * period_s, period_s * period_s * period_s},
       listener_(std::move(listener)), store_(std::make_unique_for_overwrite<PathStore>()),
       executor_(std::make_unique<Executor>(*store_, period_s)),
-      planner_(std::make_unique<Planner>(*store_, PlannerSettings{period_s, LATENCY, HORIZON_S, true})) {
+      planner_(std::make_unique<Planner>(*store_, PlannerSettings{period_s})) {
     planner_->set_limits(limits);
 }
 
@@ -57,10 +55,8 @@ void Estimator::set_limits(const Limits &limits) {
 }
 
 void Estimator::set_machine(const Scales &scales, const Pose &low, const Pose &high) {
-    Scales whole = scales;
-    whole.max_feed = std::max(1.0, scales.max_feed);
-    scales_ = whole;
-    planner_->set_scales(whole);
+    scales_ = scales;
+    planner_->set_scales(scales);
     planner_->set_room(low, high);
 }
 
@@ -68,7 +64,6 @@ void Estimator::begin(const Pose &pose) {
     executor_->set_position(pose);
     executor_->step(++cycle_);
     planner_->begin(pose, executor_->snapshot());
-    isFresh_ = true;
     last_.fill(pose);
     kept_ = last_.size();
 }
@@ -81,16 +76,7 @@ void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
     if (!(driven.length > 1e-12)) {
         return;
     }
-    const PathDemand demand = planner_->demand_of(request);
-    if (!isFresh_ && !planner_->suits(demand)) {
-        finish();
-        isFresh_ = true;
-    }
-    if (isFresh_) {
-        planner_->begin(planner_->end(), executor_->snapshot(), demand);
-        isFresh_ = false;
-    }
-    while (!planner_->hasRoom(executor_->snapshot())) {
+    while (!planner_->hasRoom()) {
         if (!step()) {
             return;
         }
@@ -198,6 +184,8 @@ void Estimator::count(const ExecutorOutput &out) {
     }
     ++move_cycles_;
     move_top_ = std::max(move_top_, std::abs(out.velocity));
+    const bool is_first_half = out.distance_to_go >= 0.5 * store_->primitive(move_).length;
+    move_middle_ = is_first_half ? std::abs(out.velocity) : move_middle_;
     constexpr std::uint64_t EACH = 64, EVERY = 8;
     const bool isShort = move_cycles_ <= EACH;
     const std::uint64_t phase = move_cycles_ % EVERY;
@@ -228,9 +216,9 @@ void Estimator::close_move() {
     MoveEstimate e;
     e.tag = store_->move(move_);
     e.seconds = static_cast<double>(move_cycles_) * period_s_;
-    if (skipped_ > 0 && move_top_ > 0) {
-        skipped_s_ += skipped_ / move_top_;
-        e.seconds += skipped_ / move_top_;
+    if (skipped_ > 0 && move_middle_ > 0) {
+        skipped_s_ += skipped_ / move_middle_;
+        e.seconds += skipped_ / move_middle_;
     }
     const double length =
         (store_->primitive(move_).length + std::exchange(skipped_, 0.0)) / std::max(e.tag.feed_ratio, 1e-300);
@@ -253,7 +241,7 @@ void Estimator::close_move() {
     }
     bound_ = {};
     move_cycles_ = 0;
-    move_top_ = 0;
+    move_top_ = move_middle_ = 0;
     listener_(e);
 }
 

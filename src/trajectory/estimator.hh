@@ -78,11 +78,11 @@ class Estimator {
     Sequence move_ = 0;  ///< the one whose time is counted
     std::uint64_t move_cycles_ = 0;
     double move_top_ = 0;  ///< maximum speed along its parameter until now
+    double move_middle_ = 0;  ///< speed in the middle of the move
     std::uint64_t standing_cycles_ = 0;
     double skipped_ = 0,
            skipped_s_ = 0;  ///< length and time that were not driven; the length of the newest move
     bool isComplete_ = true;
-    bool isFresh_ = true;  ///< nothing has been added to the path
     std::array<Pose, 4> last_{};
     std::size_t kept_ = 0;  ///< of them, positions of consecutive cycles
     std::array<std::array<std::uint64_t, LIMITED_COUNT>, 3>

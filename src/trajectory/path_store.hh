@@ -6,7 +6,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <span>
 
 #include "base/copyable_atomic.hh"
 #include "base/raw_array.hh"
@@ -16,7 +15,7 @@
 
 namespace mw::trajectory {
 
-/// Counts moves, pieces, phases and primitives from 1 on; an element n lives in slot n modulo the capacity.
+/// Counts moves, spans, cells and primitives from 1 on; an element n lives in slot n modulo the capacity.
 using Sequence = std::uint64_t;
 
 /// Who a stretch of path belongs to; plain data that planner and executor only carry.
@@ -32,96 +31,6 @@ struct MoveTag {
     double feed_ratio = 1;          ///< s per feed length
     double end_s = 0;               ///< where it ends on the programmed path
     Pose end;
-};
-
-/// Path acceleration that a piece allows, by the squared speed b: the least of some lines alpha - beta b.
-struct AccelBound {
-    static constexpr int LINES = 3;
-    std::array<double, LINES> alpha{}, beta{};
-
-    static AccelBound constant(double a) noexcept {
-        AccelBound bound;
-        bound.alpha.fill(a);
-        return bound;
-    }
-    /// Through what is left at LimitTuning::CHORDS of the squared speed v^2.
-    static AccelBound through(const double (&left)[LINES + 1], double v) noexcept;
-    /// The lesser of two up to the speed v; chords of it, so on the safe side.
-    static AccelBound least(const AccelBound &x, const AccelBound &y, double v) noexcept;
-    /// At the squared speed b, never negative.
-    double at(double b) const noexcept {
-        double a = alpha[0] - beta[0] * b;
-        for (std::size_t k = 1; k < LINES; ++k) {
-            const double c = alpha[k] - beta[k] * b;
-            a = c < a ? c : a;
-        }
-        return a > 0 ? a : 0;
-    }
-    /// Highest squared speed from which `length` suffices to come down to `b`.
-    double highest_before(double b, double length) const noexcept {
-        double best = (2.0 * length * alpha[0] + b) / (1.0 + 2.0 * length * beta[0]);
-        for (std::size_t k = 1; k < LINES; ++k) {
-            const double c = (2.0 * length * alpha[k] + b) / (1.0 + 2.0 * length * beta[k]);
-            best = c < best ? c : best;
-        }
-        return best > b ? best : b;
-    }
-};
-
-/// How hard a stop may brake on each part of a piece, parts of equal length, where that is more than what
-/// speeds are planned with: by the squared speed, chords between parts of the highest.
-struct Braking {
-    static constexpr std::size_t PARTS = 6;
-    static constexpr std::size_t MOST_NODES = 7;
-    using Part = std::array<float, MOST_NODES>;  ///< [1/s^2]
-
-    double top = 0;  ///< the highest squared speed; 0: nowhere more than planned
-    std::array<Part, PARTS> parts{};
-
-    /// Parts of `top` at which the bounds are known.
-    std::span<const double> nodes() const noexcept;
-    /// What a part allows at the squared speed b.
-    double at(std::size_t part, double b) const noexcept;
-    /// The part from `x` on, of a piece of `length`; the last one also behind its end.
-    static std::size_t part_at(double x, double length) noexcept;
-    /// Where parts that allow the same end.
-    double end_of(std::size_t part, double length) const noexcept;
-};
-
-/// A segment of path with separate limits: a part of one primitive, or of a blend between two.
-///   part:  q(x) = A(offset + x)
-///   blend: q(x) = A(L - d + z - z^2/4d) + B(z^2/4d) - corner,  z = offset + x in [0, 2d], L the length of A
-struct Piece {
-    Sequence primitive = 0;  ///< A; B is the next one
-    Sequence move = 0;       ///< the move of A; B's is the next one
-    double offset = 0;       ///< s of A, or z of the blend, where the piece begins
-    double length = 0;
-    double blend_d = 0;       ///< 0: a part of A
-    bool isToEnd = false;     ///< a part of A that reaches A's end
-    AccelBound acceleration;  ///< along x, such that every axis keeps its limits [1/s^2]
-    Braking braking;          ///< the same for stops, which the speeds are not planned with
-
-    /// How hard a stop brakes from x on at the squared speed b: never less than speeds are planned with.
-    double brake_at(double x, double b) const noexcept;
-    /// The same until x = `end`: where the piece allows another, be it by the place or by a speed that has
-    /// fallen.
-    struct BrakeLeg {
-        double a = 0, end = 0;
-    };
-    BrakeLeg brake_leg(double x, double b) const noexcept;
-};
-
-/// x(t) = x0 + v0 t + a t^2 / 2 + j t^3 / 6, t in [0, duration], on one piece.
-struct Phase {
-    Sequence piece = 0;
-    double duration = 0;
-    double x0 = 0, v0 = 0, a = 0, j = 0;
-
-    /// Place and speed at the time t in it.
-    double x_at(double t) const noexcept { return x0 + t * (v0 + t * (0.5 * a + t * j * (1.0 / 6.0))); }
-    double v_at(double t) const noexcept { return v0 + t * (a + 0.5 * t * j); }
-    /// It ends with a speed of 0, except for rounding.
-    bool isStop(double period_s) const noexcept;
 };
 
 /// A tap along a line: x is 0 at the start and `depth` at the bottom.
@@ -161,16 +70,6 @@ struct Pass {
     bool isAny() const noexcept { return is_tap || first != 0; }
 };
 
-/// Phases for the executor. They never end with a stop after the committed part: when they run out, the
-/// executor brakes along the pieces, and the planner has made sure that this is possible within the limits.
-struct Commit {
-    std::uint64_t plan = 0;  ///< increasing
-    bool isSwitch = false;   ///< leave the present plan at `switch_cycle` for phases [begin, end)
-    std::uint64_t switch_cycle = 0;
-    std::uint64_t brakes = 0;     ///< Snapshot::brakes that the plan was made for; another value voids it
-    Sequence begin = 0, end = 0;  ///< not a switch: the current plan `plan` now continues to `end`
-};
-
 /// A motion along the curve, in cells of time, with its stops: each begins behind a cell of the motion and
 /// ends at rest. The last one begins behind the last cell, so the executor needs no planner to stop.
 struct CurvePlan {
@@ -178,12 +77,13 @@ struct CurvePlan {
         Sequence behind = 0;          ///< the cell of the motion that is left
         Sequence begin = 0, end = 0;  ///< cells of the stop; none where the motion itself ends at rest
     };
-    static constexpr std::size_t MOST_STOPS = 64;
+    static constexpr std::size_t MOST_STOPS = 192;
 
     std::uint64_t plan = 0;       ///< increasing
     Sequence behind = 0;          ///< continues the present plan behind this cell; 0: begins at rest
     Sequence begin = 0, end = 0;  ///< cells
     std::uint64_t brakes = 0;  ///< Snapshot::brakes that a start at rest was made for; another value voids it
+    std::uint64_t after = 0;  ///< Snapshot::plan that a start at rest was made for; another value voids it
     Sequence span = 0, move = 0;            ///< at the start, from rest
     Sequence last_span = 0, last_move = 0;  ///< that are known
     bool is_stop = false;                   ///< no motion: the present plan takes its next stop
@@ -192,28 +92,25 @@ struct CurvePlan {
     std::array<Stop, MOST_STOPS> stops{};
 };
 
-enum class Motion : std::uint8_t { REST, FOLLOW, BRAKE, LOCKED, CURVE };
+enum class Motion : std::uint8_t { REST, LOCKED, CURVE };
 
 /// The executor's state at the end of a servo cycle.
 struct Snapshot {
     std::uint64_t cycle = 0;
-    std::uint64_t plan = 0;    ///< the last switch that was taken
-    std::uint64_t brakes = 0;  ///< counts how often the executor left a plan by itself
+    std::uint64_t plan = 0;    ///< the last plan that was taken
+    std::uint64_t brakes = 0;  ///< counts holds at rest and dropped paths: plans made before are not taken
     std::uint64_t drops = 0;   ///< counts dropped paths; the planner starts afresh for each
     Motion motion = Motion::REST;
-    bool isDropping = false;  ///< braking, and what is left will be dropped
+    bool isDropping = false;  ///< stopping, and what is left will be dropped
     bool isHeld = false;
-    Sequence phase = 0;  ///< FOLLOW: the phase and the time in it
-    double time_in_phase = 0;
-    bool isOnCurve = false;  ///< the path is a curve: `x` is the place on it, `phase` the cell
-    Sequence piece = 0;      ///< where on the path; 0: no path, or a curve
+    Sequence cell = 0;  ///< of the plan, and the time in it
+    double time_in_cell = 0;
+    bool isOnPath = false;  ///< `x` is a point of the present path
     double x = 0, v = 0;
     Sequence done_move = 0;  ///< moves completed by what is commanded
 };
 
 inline constexpr std::size_t PRIMITIVE_CAPACITY = 4096;
-inline constexpr std::size_t PIECE_CAPACITY = 16384;
-inline constexpr std::size_t PHASE_CAPACITY = 65536;
 inline constexpr std::size_t SPAN_CAPACITY = 16384;
 inline constexpr std::size_t CELL_CAPACITY = 32768;
 inline constexpr std::size_t LEG_CAPACITY = 8192;
@@ -231,40 +128,24 @@ struct PathEvent {
 struct PathStore {
     RawArray<Primitive, PRIMITIVE_CAPACITY> primitives;
     RawArray<MoveTag, PRIMITIVE_CAPACITY> moves;
-    RawArray<Piece, PIECE_CAPACITY> pieces;
-    RawArray<Phase, PHASE_CAPACITY> phases;
     RawArray<curve::Span, SPAN_CAPACITY> spans;
     RawArray<curve::TimeCell, CELL_CAPACITY> cells;
     RawArray<PassLeg, LEG_CAPACITY> legs;
     SpscRing<PathEvent, 1024> events;     ///< planner -> executor
-    SpscRing<Commit, 64> commits;         ///< planner -> executor
     SpscRing<CurvePlan, 16> curve_plans;  ///< planner -> executor
-    /// Pieces up to here may be read by the executor. Release by the planner after filling, acquire by the
-    /// executor.
-    CopyableAtomic<Sequence> last_piece{0};
-    /// The last move of a curve that is known.
+    /// The last move that is known.
     CopyableAtomic<Sequence> last_move{0};
 
     Primitive &primitive(Sequence n) noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
     const Primitive &primitive(Sequence n) const noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }
     MoveTag &move(Sequence n) noexcept { return moves[n % PRIMITIVE_CAPACITY]; }
     const MoveTag &move(Sequence n) const noexcept { return moves[n % PRIMITIVE_CAPACITY]; }
-    Piece &piece(Sequence n) noexcept { return pieces[n % PIECE_CAPACITY]; }
-    const Piece &piece(Sequence n) const noexcept { return pieces[n % PIECE_CAPACITY]; }
     curve::Span &span(Sequence n) noexcept { return spans[n % SPAN_CAPACITY]; }
     const curve::Span &span(Sequence n) const noexcept { return spans[n % SPAN_CAPACITY]; }
     curve::TimeCell &cell(Sequence n) noexcept { return cells[n % CELL_CAPACITY]; }
     const curve::TimeCell &cell(Sequence n) const noexcept { return cells[n % CELL_CAPACITY]; }
     PassLeg &leg(Sequence n) noexcept { return legs[n % LEG_CAPACITY]; }
     const PassLeg &leg(Sequence n) const noexcept { return legs[n % LEG_CAPACITY]; }
-    Phase &phase(Sequence n) noexcept { return phases[n % PHASE_CAPACITY]; }
-    const Phase &phase(Sequence n) const noexcept { return phases[n % PHASE_CAPACITY]; }
 };
-
-/// Position at `x` of a piece. [servo, planner]
-[[gnu::hot]] Pose position_at(const PathStore &store, const Piece &piece, double x) noexcept;
-
-/// dq/dx at `x` of a piece. [servo, planner]
-Pose derivative_at(const PathStore &store, const Piece &piece, double x) noexcept;
 
 }  // namespace mw::trajectory

@@ -2,12 +2,8 @@
 // The planning side of path motion: joins moves, finds the fastest profile within the limits, commits it.
 #pragma once
 
-#include "trajectory/path/path_builder.hh"
 #include "trajectory/plan/curve_planner.hh"
 #include "trajectory/plan/tap_plan.hh"
-#include "trajectory/timing/timing_plan.hh"
-#include "trajectory/trial/easing.hh"
-#include "trajectory/trial/trial.hh"
 
 namespace mw::trajectory {
 
@@ -16,26 +12,21 @@ struct Trouble {
     Overreach overreach;   ///< of who chooses speeds: the path stops
 };
 
-/// The face of the parts. With jerk limits, and for threads and taps, CurvePlanner. Otherwise PathBuilder
-/// makes pieces of moves, and TimingPlan plans and commits phases; where joints are not axes, Trial checks
-/// what would be commanded, and Easing slows down what it rejects. The parts exchange values and do not know
-/// each other.
-///
-/// All methods: planner thread only. Allocates at construction and along curves. Same calls with the same
-/// values: same bits.
+struct PlannerSettings {
+    double period_s = 1e-3;           ///< of the servo
+    std::uint64_t latency = 3;        ///< cycles from a plan's making to its start
+    SpeedChooser *chooser = nullptr;  ///< chooses speeds instead of the fastest; stays valid
+};
+
+/// All methods: planner thread only. Allocates. Same calls with the same values: same bits.
 class Planner {
   public:
     Planner(PathStore &store, const PlannerSettings &settings) noexcept;
 
-    /// Holds for moves added from now on; on a curve from the next `begin` on.
+    /// Limits of the next path that begins.
     void set_limits(const Limits &limits) noexcept { conditions_.limits.set(limits); }
-    /// A path that begins now with such a move would be made as the present one.
-    bool suits(const PathDemand &demand) const noexcept { return curve_.suits(demand, conditions_); }
-    /// What a path that begins with such a move is made for.
-    PathDemand demand_of(const MoveRequest &request) const noexcept {
-        const bool is_locked = conditions_.isLocked(request);
-        return {is_locked ? PathDemand::Drive::BY_ANGLE : PathDemand::Drive::BY_TIME};
-    }
+    /// The present path was made for the present limits and joints.
+    bool suits() const noexcept { return curve_.suits(conditions_); }
 
     /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
     void set_joints(const JointMap *map, const JointLimits &limits, const LinearJoints &linear = {}) noexcept;
@@ -45,18 +36,15 @@ class Planner {
     /// limits.
     void set_room(const Pose &low, const Pose &high, const JointRoom &joints = {}) noexcept;
 
-    /// A new path begins at `start`, where the executor rests with nothing left of another. `demand`: of
-    /// its first move.
-    void begin(const Pose &start, const Snapshot &now, const PathDemand &demand = {}) noexcept;
+    /// A new path begins at `start`, where the executor rests with nothing left of another.
+    void begin(const Pose &start, const Snapshot &now) noexcept;
 
     /// One more move can be added.
-    bool hasRoom(const Snapshot &now) const noexcept {
-        return curve_.isActive() ? curve_.path().hasRoom() : PathBuilder::hasRoom(path_, now);
-    }
+    bool hasRoom() const noexcept { return curve_.path().hasRoom(); }
     /// Appends a move that starts at `end()`; its length must be greater than 0. Returns its number.
     Sequence add(const Primitive &primitive, const MoveRequest &request) noexcept;
     /// Where the next move starts.
-    const Pose &end() const noexcept { return curve_.isActive() ? curve_.path().end() : builder_.end(); }
+    const Pose &end() const noexcept { return curve_.path().end(); }
     /// Of this path, 0 as long as it has none.
     Sequence last_move() const noexcept { return path_.end_move(); }
     /// An output change when what has been added so far is complete; false when there is no room.
@@ -103,33 +91,18 @@ class Planner {
     void update(const Snapshot &now) noexcept;
 
     /// The committed plan runs to the end of the known path and there is an open end that could be released.
-    bool isStarving() const noexcept {
-        return curve_.isActive() ? curve_.isStarving()
-                                 : builder_.hasOpenEnd() && (timing_.isAtEndOf(path_) || path_.isAllDriven());
-    }
+    bool isStarving() const noexcept { return curve_.isStarving(); }
     /// Why the path does not continue; each once.
     Trouble take_trouble() noexcept;
     std::uint32_t moves_left(const Snapshot &now) const noexcept;
 
   private:
-    PathView view() const noexcept { return {path_, conditions_}; }
-    /// The move at whose start the executor is stopped, 0: none.
-    Sequence standing_before(const Snapshot &now) const noexcept;
-    void plan_tried(const Snapshot &now) noexcept;
-    bool find_plan(const Snapshot &now, LeaderState from) noexcept;
-    bool ease(const LeaderState &from, const Cause &cause) noexcept;
-
     PlannerSettings settings_;
     Conditions conditions_;
     PlannedPath path_;
-    PathBuilder builder_;
-    TimingPlan timing_;
-    Trial trial_;
-    Easing easing_;
     plan::CurvePlanner curve_;
     std::uint64_t drops_ = 0;  ///< Snapshot::drops of this path
     bool isOverreachTold_ = false, is_stuck_told_ = false;
-    int refusals_ = 0;  ///< planning at rest, one after the other, for which no plan passed
 };
 
 }  // namespace mw::trajectory

@@ -42,7 +42,6 @@ TimeEstimate::TimeEstimate(const MachineConfig &machine, const Overrides &overri
       // An estimate has no kinematics: each joint is treated as the axis of its letter.
       limits_(motion::fold_limits(settings_, machine.axis_map, motion::ALL_HOMED).path),
       corner_scale_(settings_.get(motion::Parameter::TRAJ_CORNER_SCALE)),
-      merge_added_(settings_.isSet(motion::Parameter::TRAJ_ADDED_TOLERANCES)),
       estimator_(std::make_unique<trajectory::Estimator>(
           limits_, static_cast<double>(machine.servo_period_ns) * 1e-9,
           [this](const trajectory::MoveEstimate &move) { count(move); })) {
@@ -51,7 +50,6 @@ TimeEstimate::TimeEstimate(const MachineConfig &machine, const Overrides &overri
     scales.feed = overrides.feed;
     scales.rapid = overrides.rapid;
     scales.max_velocity = overrides.max_velocity > 0 ? overrides.max_velocity : scales.max_velocity;
-    scales.max_feed = settings_.get(motion::Parameter::MAX_FEED_SCALE);
     estimator_->set_machine(scales, room.low, room.high);
 }
 
@@ -89,8 +87,6 @@ trajectory::MoveRequest TimeEstimate::request_of(const geometry::MoveSettings &s
     r.tag.block = static_cast<std::uint32_t>(section_);
     r.isRapid = settings.isRapid || !(settings.feed > 0);
     r.tolerance = settings.tolerance;
-    r.isMergeAdded = merge_added_;
-    r.set_merge(settings.naivecam_tolerance);
     r.corner_scale = settings.corner_scale > 0 ? settings.corner_scale : corner_scale_;
     r.join = settings.mode;
     return r;

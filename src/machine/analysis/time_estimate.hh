@@ -79,7 +79,6 @@ class TimeEstimate {
     motion::Settings settings_;
     trajectory::Limits limits_;
     double corner_scale_;  ///< for moves that set none
-    bool merge_added_;
     TimeFigures figures_;
     int tool_ = 0;
     std::vector<std::string> files_;

@@ -21,7 +21,6 @@ namespace mw::motion {
 struct PathLimits {
     trajectory::Limits limits;
     double corner_scale = 1;          ///< of moves without a tolerance
-    bool areTolerancesAdded = false;  ///< deviation of joined lines is added to P
     geometry::Pose low, high;         ///< soft limits per axis; +-infinity without a limit
     std::uint32_t axes = 0;           ///< bit per axis that the kinematics drive
     std::uint32_t offset_axes = 0;    ///< bit per axis that may have an external offset
@@ -50,7 +49,7 @@ struct PathView {
     std::uint32_t enables = 0;  ///< counts Enable
     std::uint32_t limits_version = 0;
     geometry::Pose position;  ///< carte_pos_cmd
-    double feed_scale = 1, rapid_scale = 1, max_feed_scale = 1, max_velocity = 0;
+    double feed_scale = 1, rapid_scale = 1, max_velocity = 0;
     std::array<double, MAX_SPINDLES> spindle_rps{}, spindle_revs{};
     std::uint32_t spindles_ready = 0;  ///< bit per spindle that is at speed or off
     std::uint32_t spindles_reversible = 0;

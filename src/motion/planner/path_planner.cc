@@ -15,7 +15,6 @@ constexpr int STARVING_UPDATES = 3;
 
 /// Rounding of a corner within the extent of its moves [machine units, degrees].
 constexpr double CORNER_ROUNDING = 1e-6;
-constexpr double HORIZON_S = 0.1;
 /// Time from making a plan to its start; a slower planner makes the plan again.
 constexpr double LATENCY_S = 3e-3;
 
@@ -28,8 +27,7 @@ std::uint64_t latency_cycles(double period_s) noexcept {
 PathPlanner::PathPlanner(const PathPlannerConfig &config, const kinematics::Kinematics &kinematics,
                          Channels &channels, PathLink &link) noexcept
     : config_(config), kinematics_(kinematics), map_(kinematics), channels_(channels), link_(link),
-      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), HORIZON_S, true,
-                            config.chooser}) {}
+      planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), config.chooser}) {}
 
 void PathPlanner::update() noexcept {
     if (!link_.view.read(view_, 1000)) {
@@ -88,7 +86,6 @@ void PathPlanner::follow_controller() noexcept {
     trajectory::Scales scales;
     scales.feed = view_.feed_scale;
     scales.rapid = view_.rapid_scale;
-    scales.max_feed = view_.max_feed_scale;
     scales.max_velocity = view_.max_velocity;
     scales.spindle_rps = view_.spindle_rps;
     planner_.set_spindles(view_.spindle_brakings, view_.encoder_steps);
@@ -206,7 +203,7 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
         planner_.release_end();
         return true;
     }
-    if (isPathBegun_ && !isIdle() && !planner_.suits(demand_of(c))) {
+    if (isPathBegun_ && !isIdle() && !planner_.suits()) {
         planner_.release_end();
         return true;
     }
@@ -222,21 +219,8 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
         isQueueFull_ = true;
         return true;
     }
-    isQueueFull_ = isPathBegun_ && !planner_.hasRoom(view_.executor);
+    isQueueFull_ = isPathBegun_ && !planner_.hasRoom();
     return isQueueFull_ || pending_.size() + 2 >= PendingCommands::CAPACITY;
-}
-
-/// Requirements of a path of such moves.
-trajectory::PathDemand PathPlanner::demand_of(const PathCommand &c) const noexcept {
-    const auto *line = std::get_if<Line>(&c.body);
-    const auto *arc = std::get_if<Arc>(&c.body);
-    if (std::holds_alternative<RigidTap>(c.body)) {
-        return {.drive = trajectory::PathDemand::Drive::BY_ANGLE};
-    }
-    if (line == nullptr && arc == nullptr) {
-        return {};
-    }
-    return planner_.demand_of(request_for(c, line != nullptr ? line->terms : arc->terms));
 }
 
 /// True when all accepted commands are driven.
@@ -249,9 +233,8 @@ bool PathPlanner::isIdle() const noexcept {
 void PathPlanner::begin_path(const PathCommand &c) noexcept {
     const bool isOutput = std::holds_alternative<SynchedDigitalOutput>(c.body) ||
                           std::holds_alternative<SynchedAnalogOutput>(c.body);
-    const trajectory::PathDemand demand = demand_of(c);
-    if (!isPathBegun_ || (!isOutput && isIdle() && !planner_.suits(demand))) {
-        planner_.begin(view_.position, view_.executor, demand);
+    if (!isPathBegun_ || (!isOutput && isIdle() && !planner_.suits())) {
+        planner_.begin(view_.position, view_.executor);
         isPathBegun_ = true;
     }
 }

@@ -83,7 +83,6 @@ class PathPlanner {
     bool take_commands() noexcept;
     bool isWaiting(const PathCommand &c) noexcept;
     bool isIdle() const noexcept;
-    trajectory::PathDemand demand_of(const PathCommand &c) const noexcept;
     void begin_path(const PathCommand &c) noexcept;
     Reason accept(const PathCommand &c) noexcept;
     Reason accept_flush(const PathCommand &c) noexcept;

@@ -86,8 +86,6 @@ trajectory::MoveRequest PathPlanner::request_for(const PathCommand &c,
     r.join = terms.mode;
     r.tolerance = terms.tolerance;
     r.corner_scale = terms.corner_scale > 0 ? terms.corner_scale : limits_.corner_scale;
-    r.isMergeAdded = limits_.areTolerancesAdded;
-    r.set_merge(terms.naivecam_tolerance);
     const bool hasFeed = terms.feed > 0 || terms.feed_per_revolution > 0;
     r.isRapid = terms.isRapid || !hasFeed;
     r.isOverridable = terms.isFeedOverridable;

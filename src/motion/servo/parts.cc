@@ -161,7 +161,6 @@ void ControllerParts::publish_limits() noexcept {
     out.side = model.kinematics().side(position.cmd());
     out.position_changes = joint_start.changes();
     out.corner_scale = model.settings().get(Parameter::TRAJ_CORNER_SCALE);
-    out.areTolerancesAdded = model.settings().isSet(Parameter::TRAJ_ADDED_TOLERANCES);
     link->limits.write(out);
 }
 

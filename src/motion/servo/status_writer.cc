@@ -133,7 +133,6 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
     v.position = programmed;
     v.feed_scale = parts.holds.net_feed_scale();
     v.rapid_scale = parts.holds.rapid_scale();
-    v.max_feed_scale = std::max(1.0, parts.model.settings().get(Parameter::MAX_FEED_SCALE));
     v.max_velocity = parts.holds.max_velocity();
     v.spindles_reversible = 0;
     v.spindles_ready = 0;

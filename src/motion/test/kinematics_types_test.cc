@@ -238,8 +238,8 @@ TEST_F(KinematicsTypesTest, WithoutHomesTheTypeChangesAndNoPoseIsNeeded) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-/// At any instant of any program joints keep their limits (the rig sees to it), the pose is that of the
-/// joints, and a path that was not told as stopped is done.
+/// At any instant of any program joints keep their limits (the rig checks them), the pose is that of the
+/// joints, and a path that was not reported as stopped is done.
 TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSilence) {
     std::mt19937 random(14);
     std::uniform_int_distribution<int> pause(1, 400);
@@ -259,14 +259,13 @@ TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSi
         }
         rig.send_path(Flush{});
         rig.step(pause(random));
-        const bool isFinished = rig.isDone(last);
         ask(type(random));
         ASSERT_TRUE(
             rig.run_until([&] { return rig.status().isInPosition && rig.answer_to(last) != nullptr; }));
         const bool isStopped = !rig.faults.empty();
         stopped += isStopped ? 1 : 0;
         driven += rig.isDone(last) ? 1 : 0;
-        EXPECT_TRUE(isStopped != rig.isDone(last) || isFinished) << round;
+        EXPECT_TRUE(isStopped || rig.isDone(last)) << round;
         geometry::Pose pose;
         const double joints[MAX_JOINTS] = {joint(0), joint(1), joint(2)};
         kinematics.forward(joints, pose);

@@ -83,26 +83,5 @@ TEST(Tolerance, ASmallerOneOnTheWayKeepsSingleSteps) {
     }
 }
 
-/// Pieces of a path of so many steps of 0.02 along a slow wave of this height.
-trajectory::Sequence pieces_of(double height, double tolerance) {
-    MotionRig rig("XYZ", V, A);
-    rig.ready();
-    geometry::Pose at;
-    for (int i = 1; i <= 200; ++i) {
-        at[0] = 0.02 * i;
-        at[1] = height * std::sin(at[0]);
-        rig.line(at, 30, PathMode::BLEND, tolerance);
-    }
-    const CommandId flush = rig.send_path(Flush{});
-    EXPECT_TRUE(rig.run_until([&] { return rig.isDone(flush); }, 30));
-    EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd, 4, 1e-9);
-    return rig.link->store.last_piece.load();
-}
-
-TEST(Tolerance, NearlyStraightLinesBecomeOneWithinIt) {
-    EXPECT_LE(pieces_of(1e-4, 0.01), 20U);
-    EXPECT_GE(pieces_of(1e-4, 0), 200U) << "none is asked for: every line is one";
-}
-
 }  // namespace
 }  // namespace mw::motion

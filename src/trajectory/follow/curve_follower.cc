@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trajectory/tuning.hh"
-
 namespace mw::trajectory {
 
 namespace {
+
+/// Distance from the end of a move that is rounding, at a length of 1.
+constexpr double ARRIVED = 4e-12;
 
 /// The place where the planner takes a move as driven.
 bool isAtEnd(const MoveTag &move, double s) noexcept {
@@ -28,7 +29,7 @@ void CurveFollower::take(const CurvePlan &plan) noexcept {
 /// False if the plan that waits was made for another state.
 bool CurveFollower::start(const Snapshot &state) noexcept {
     const bool is_valid =
-        waiting_.brakes == state.brakes && state.motion == Motion::REST && !state.isHeld && !state.isDropping;
+        waiting_.brakes == state.brakes && waiting_.after == state.plan && state.motion == Motion::REST && !state.isHeld && !state.isDropping;
     if (is_valid) {
         plan_ = waiting_;
         cell_ = plan_.begin;
@@ -46,8 +47,7 @@ bool CurveFollower::start(const Snapshot &state) noexcept {
 void CurveFollower::step(const PathStore &store, double dt, Snapshot &state) noexcept {
     if (isWaiting() && start(state)) [[unlikely]] {
         state.motion = plan_.pass.isAny() ? Motion::LOCKED : Motion::CURVE;
-        state.isOnCurve = true;
-        state.piece = 0;
+        state.isOnPath = true;
     }
     if (state.motion != Motion::CURVE) [[unlikely]] {
         state.plan = state.motion == Motion::LOCKED ? plan_.plan : state.plan;
@@ -61,8 +61,8 @@ void CurveFollower::step(const PathStore &store, double dt, Snapshot &state) noe
         state.motion = Motion::REST;
     }
     state.plan = plan_.plan;
-    state.phase = cell_;
-    state.time_in_phase = time_;
+    state.cell = cell_;
+    state.time_in_cell = time_;
     state.x = s_;
     state.v = v_;
 }
@@ -146,7 +146,7 @@ CurveFollower::Place CurveFollower::place(const PathStore &store, bool is_restin
     at.is_complete = s_ >= move.end_s;
     at.left = std::max(0.0, move.end_s - s_);
     const double off = geometry::norm(at.pose - move.end);
-    if (at.is_complete && is_resting && off <= ExecutorTuning::ARRIVED * (1.0 + geometry::norm(move.end))) {
+    if (at.is_complete && is_resting && off <= ARRIVED * (1.0 + geometry::norm(move.end))) {
         at.pose = move.end;
     }
     return at;

@@ -31,15 +31,7 @@ struct ExecutorOutput {
     TapDemand tap;
 };
 
-/// How the executor brakes by itself on the present piece.
-struct Brake {
-    Phase phase;
-    double time = 0;       ///< in it
-    bool isFinal = false;  ///< it ends in a stop
-    double end = 0;        ///< where on the piece it ends otherwise
-};
-
-/// What an executor remembers. A copy of it goes on in another executor whose store holds the same path.
+/// State of an executor. A copy of it continues in another executor whose store holds the same path.
 class ExecutorState {
   protected:
     explicit ExecutorState(double period_s) noexcept : period_(period_s) {}
@@ -47,10 +39,6 @@ class ExecutorState {
     double period_;
     Snapshot state_;
     ExecutorOutput out_;
-    Commit next_switch_;      ///< plan != 0: waits for its cycle
-    Sequence phase_end_ = 0;  ///< phases of the plan taken end here
-    Sequence next_end_ = 0;   ///< the same of the waiting switch
-    Brake brake_;
     Pose position_;
     Sequence done_ = 0;
 
@@ -63,10 +51,8 @@ class ExecutorState {
 
 /// All methods: servo thread only; bounded, no allocation.
 ///
-/// Follows phases; when they run out, or on `hold` and `drop`, it brakes with each piece's own acceleration
-/// along the path. A late or lost planner therefore means a stop on the path.
-/// Along a curve (Motion::CURVE) every plan has its stops: `hold`, `drop` and a planner that is away take the
-/// next one.
+/// Follows the cells of a plan. Every plan has its stops: `hold`, `drop` and a planner that is late or lost take
+/// the next one.
 /// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
 /// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once. In a tap it
 /// switches the spindle off and follows it to its stand.
@@ -118,17 +104,8 @@ class Executor : private ExecutorState {
     const Snapshot &snapshot() const noexcept { return state_; }
     const ExecutorOutput &output() const noexcept { return out_; }
 
-    /// Upper bound of phases and pieces passed in one cycle; the planner keeps below it.
-    static constexpr int MAX_STEPS_PER_CYCLE = 4096;
-
   private:
-    void take_commits() noexcept;
-    [[gnu::hot]] void advance(double dt) noexcept;
-    [[gnu::hot]] double follow(double dt) noexcept;
-    [[gnu::cold]] double brake_along(double dt) noexcept;
-    [[gnu::cold]] void start_brake() noexcept;
-    [[gnu::cold]] void brake_on_piece() noexcept;
-    [[gnu::cold]] void enter_next_piece() noexcept;
+    void take_plans() noexcept;
     [[gnu::cold]] void come_to_rest() noexcept;
     [[gnu::hot]] void locate() noexcept;
     [[gnu::hot]] void command() noexcept;

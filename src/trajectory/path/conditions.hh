@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "trajectory/path/move_request.hh"
 #include "trajectory/path/path_limits.hh"
@@ -18,7 +19,6 @@ class SpeedChooser;
 struct Scales {
     double feed = 1.0;
     double rapid = 1.0;
-    double max_feed = 1.0;            ///< highest `feed` that will come; limits are made for it
     double max_velocity = UNLIMITED;  ///< operator's ceiling along the feed length
     std::array<double, MAX_SPINDLES> spindle_rps{};
 };
@@ -46,8 +46,12 @@ struct Conditions {
     bool isLocked(const MoveRequest &request) const noexcept {
         return request.isLocked && (request.isTapped || !workspace.isMapped());
     }
-    /// Plans are tried out before they are committed.
-    bool isTried() const noexcept { return workspace.isMapped(); }
 };
+
+/// Speed of a move that follows a spindle, at the spindle's present speed, along the parameter.
+inline double turning_speed(const MoveRequest &move, const Scales &scales) noexcept {
+    const double rps = std::abs(scales.spindle_rps[static_cast<std::size_t>(move.spindle)]);
+    return move.feed_per_revolution * move.tag.feed_ratio * rps;
+}
 
 }  // namespace mw::trajectory

@@ -5,17 +5,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "trajectory/tuning.hh"
-
 namespace mw::trajectory {
 
 using geometry::AXIS_COUNT;
 
 namespace {
 
-double norm_xyz(const PerLimited &p) noexcept {
-    return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-}
+/// Margin for rounding.
+constexpr double ACCELERATION_MARGIN = 1e-6;
+/// Parts of the maximum squared speed between which the remaining acceleration is a chord: denser where a
+/// concave bound falls fastest.
+constexpr double CHORDS[] = {0, 0.5, 0.85, 1};
 
 double end_radius(const Primitive &p) noexcept {
     return p.radius + std::max(0.0, p.dradius * p.length);
@@ -31,7 +31,7 @@ double largest_cosine(double from, double to) noexcept {
 
 /// Acceleration that row `r` leaves along the path at the squared speed b.
 double acceleration_left(const LimitRow &r, double b) noexcept {
-    const double limit = r.acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN);
+    const double limit = r.acceleration * (1.0 - ACCELERATION_MARGIN);
     const double turning = r.q2 * b;
     if (!(r.q1 > 0)) {
         return UNLIMITED;
@@ -91,27 +91,16 @@ void derivative_bounds(const Primitive &p, double from, double to, PerLimited &q
 }
 
 AccelBound AccelBound::through(const double (&left)[LINES + 1], double v) noexcept {
-    static_assert(std::size(LimitTuning::CHORDS) == LINES + 1);
+    static_assert(std::size(CHORDS) == LINES + 1);
     AccelBound out;
     const double b = v * v;
     for (int k = 0; k < LINES; ++k) {
         const double beta = std::max(0.0, (left[k] - left[k + 1]) /
-                                              ((LimitTuning::CHORDS[k + 1] - LimitTuning::CHORDS[k]) * b));
+                                              ((CHORDS[k + 1] - CHORDS[k]) * b));
         out.beta[static_cast<std::size_t>(k)] = beta;
-        out.alpha[static_cast<std::size_t>(k)] = left[k + 1] + beta * LimitTuning::CHORDS[k + 1] * b;
+        out.alpha[static_cast<std::size_t>(k)] = left[k + 1] + beta * CHORDS[k + 1] * b;
     }
     return out;
-}
-
-AccelBound AccelBound::least(const AccelBound &x, const AccelBound &y, double v) noexcept {
-    if (!(v < 1e100) || !(v > 0)) {
-        return constant(std::min(x.at(0), y.at(0)));
-    }
-    double left[LINES + 1];
-    for (int k = 0; k <= LINES; ++k) {
-        left[k] = std::min(x.at(LimitTuning::CHORDS[k] * v * v), y.at(LimitTuning::CHORDS[k] * v * v));
-    }
-    return through(left, v);
 }
 
 SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept {
@@ -124,7 +113,7 @@ SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept 
         }
         if (r.q2 > 0) {
             out.v =
-                std::min(out.v, std::sqrt(r.acceleration * (1.0 - LimitTuning::ACCELERATION_MARGIN) / r.q2));
+                std::min(out.v, std::sqrt(r.acceleration * (1.0 - ACCELERATION_MARGIN) / r.q2));
         }
     }
     // What is left for the path falls with b = v^2, and ever faster, so chords between points of it are on
@@ -140,7 +129,7 @@ SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept 
     }
     double left[AccelBound::LINES + 1];
     for (int k = 0; k <= AccelBound::LINES; ++k) {
-        left[k] = acceleration_left(rows, count, LimitTuning::CHORDS[k] * out.v * out.v);
+        left[k] = acceleration_left(rows, count, CHORDS[k] * out.v * out.v);
     }
     out.a = AccelBound::through(left, out.v);
     return out;
@@ -158,78 +147,6 @@ SpeedLimit limit_of(const Primitive &p, double from, double to, const Limits &li
         rows[count - 1].acceleration *= 1.0 - askew_of(p);
     }
     return limit_of_rows(rows, count, wish);
-}
-
-SpeedLimit limit_of_blend(const Primitive &a, const Primitive &b, const BlendPart &part, const Limits &limits,
-                          double wish) noexcept {
-    const double d = part.d;
-    const double from = 0.5 * part.from / d;
-    const double to = 0.5 * part.to / d;
-    PerLimited q1{};
-    PerLimited q2{};
-    const Pose step = tangent_step(a, b);
-    if (a.isArc || b.isArc) {
-        PerLimited a1;
-        PerLimited a2;
-        PerLimited b1;
-        PerLimited b2;
-        derivative_bounds(a, a.length - d, a.length, a1, a2);
-        derivative_bounds(b, 0, d, b1, b2);
-        for (std::size_t i = 0; i < q1.size(); ++i) {
-            const double turn =
-                i == XYZ_NORM ? geometry::norm_xyz(step) : std::abs(step[static_cast<int>(i)]);
-            q1[i] = std::max(a1[i], b1[i]);
-            // q'' = A''(1-x)^2 + B'' x^2 + (B' - A')/2d, and B' - A' grows by the curvatures away from the
-            // joint.
-            q2[i] = turn / (2.0 * d) + 1.5 * std::max(a2[i], b2[i]);
-        }
-    } else {
-        const Pose first = a.lin * (1.0 - from) + b.lin * from;
-        const Pose last = a.lin * (1.0 - to) + b.lin * to;
-        for (int i = 0; i < AXIS_COUNT; ++i) {
-            const auto n = static_cast<std::size_t>(i);
-            q1[n] = std::max(std::abs(first[i]), std::abs(last[i]));
-            q2[n] = std::abs(step[i]) / (2.0 * d);
-        }
-        q1[XYZ_NORM] = std::max(geometry::norm_xyz(first), geometry::norm_xyz(last));
-        q2[XYZ_NORM] = geometry::norm_xyz(step) / (2.0 * d);
-    }
-    LimitRow rows[LIMITED_COUNT];
-    return limit_of_rows(rows, rows_of(q1, q2, limits, rows), wish);
-}
-
-Pose tangent_step(const Primitive &a, const Primitive &b) noexcept {
-    return derivative_at(b, 0) - derivative_at(a, a.length);
-}
-
-double blend_d_for_tolerance(const Primitive &a, const Primitive &b, double tolerance) noexcept {
-    const Pose step = tangent_step(a, b);
-    const auto curvature = [](const Primitive &p) {
-        return p.isArc ? end_radius(p) * p.omega * p.omega + 2.0 * std::abs(p.dradius * p.omega) : 0.0;
-    };
-    // Deviation <= d/4 (g + K d/4), with g the step of the tangent and K the sum of the curvatures: solved
-    // for d.
-    const auto solve = [tolerance](double g, double k) {
-        const double half = 0.25 * g;
-        const double below = half + std::sqrt(half * half + 0.25 * k * tolerance);
-        return below > 0 ? 2.0 * tolerance / below : UNLIMITED;
-    };
-    const double linear = solve(geometry::norm_linear(step), curvature(a) + curvature(b));
-    return std::min(linear, solve(geometry::norm_abc(step), 0));
-}
-
-double blend_d_for_speed(const Primitive &a, const Primitive &b, const Limits &limits, double v) noexcept {
-    const Pose step = tangent_step(a, b);
-    PerLimited turn{};
-    for (int i = 0; i < AXIS_COUNT; ++i) {
-        turn[static_cast<std::size_t>(i)] = std::abs(step[i]);
-    }
-    turn[XYZ_NORM] = norm_xyz(turn);
-    double d = 0;
-    for (std::size_t i = 0; i < turn.size(); ++i) {
-        d = std::max(d, v * v * turn[i] / (2.0 * LimitTuning::BLEND_SHARE * limits.acceleration[i]));
-    }
-    return d;
 }
 
 }  // namespace mw::trajectory

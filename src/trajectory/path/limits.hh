@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Speed and path acceleration of a stretch of path such that every axis keeps its limits. Planning side,
-// pure. Formulas: docs/developer/planner.md.
+// pure. Formulas: docs/developer/third_order.md.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
 #include "trajectory/path/primitive.hh"
-#include "trajectory/path_store.hh"
 
 namespace mw::trajectory {
 
@@ -20,15 +19,27 @@ struct Limits {
 };
 inline constexpr double UNLIMITED = 1e300;
 
-/// Request that a path is made for, from its first move.
-struct PathDemand {
-    /// What drives it; by default either.
-    enum class Drive : std::uint8_t {
-        EITHER,
-        BY_TIME,
-        BY_ANGLE  ///< of a spindle: threads and taps
-    };
-    Drive drive = Drive::EITHER;
+/// Path acceleration that limits allow, by the squared speed b: the least of some lines alpha - beta b.
+struct AccelBound {
+    static constexpr int LINES = 3;
+    std::array<double, LINES> alpha{}, beta{};
+
+    static AccelBound constant(double a) noexcept {
+        AccelBound bound;
+        bound.alpha.fill(a);
+        return bound;
+    }
+    /// Through what is left at some parts of the squared speed v^2.
+    static AccelBound through(const double (&left)[LINES + 1], double v) noexcept;
+    /// At the squared speed b, never negative.
+    double at(double b) const noexcept {
+        double a = alpha[0] - beta[0] * b;
+        for (std::size_t k = 1; k < LINES; ++k) {
+            const double c = alpha[k] - beta[k] * b;
+            a = c < a ? c : a;
+        }
+        return a > 0 ? a : 0;
+    }
 };
 
 /// v: maximum speed along the parameter; a: path acceleration that may be used, by the speed squared.
@@ -54,23 +65,5 @@ SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept;
 
 /// The same on the part [from, to] of a primitive.
 SpeedLimit limit_of(const Primitive &p, double from, double to, const Limits &limits, double wish) noexcept;
-
-/// The same on the part [from, to] of the blend of `a` into `b` with parameter d.
-struct BlendPart {
-    double d = 0, from = 0, to = 0;
-};
-SpeedLimit limit_of_blend(const Primitive &a, const Primitive &b, const BlendPart &part, const Limits &limits,
-                          double wish) noexcept;
-
-/// Largest d for which the blend stays within `tolerance` of the corner path, in order (Frechet), separately
-/// over the lengths and over the angles.
-double blend_d_for_tolerance(const Primitive &a, const Primitive &b, double tolerance) noexcept;
-
-/// The d at which the corner takes most of each axis's acceleration at the speed `v`; a larger blend gains
-/// little.
-double blend_d_for_speed(const Primitive &a, const Primitive &b, const Limits &limits, double v) noexcept;
-
-/// Change of the tangent at the joint, per coordinate.
-Pose tangent_step(const Primitive &a, const Primitive &b) noexcept;
 
 }  // namespace mw::trajectory

@@ -12,14 +12,7 @@ struct MoveRequest {
     geometry::PathMode join = geometry::PathMode::BLEND;
     /// Of a blend [machine units; degrees over ABC]; 0: as the speed needs, in proportion to the move.
     double tolerance = 0;
-    double corner_scale = 1;     ///< with jerk limits: part of the reachable speed in corners (G64 R)
-    bool isMergeAdded = false;   ///< joining may take all of merge_tolerance, on top of `tolerance`
-    double merge_tolerance = 0;  ///< lines may be joined to one that is no farther from their ends (G64 Q)
-    /// The merge tolerance that `q` means; call with tolerance and isMergeAdded set.
-    void set_merge(double q) noexcept {
-        // A Q as large as P says no more than P does.
-        merge_tolerance = isMergeAdded || !(tolerance > 0) || q < tolerance ? q : 0.0;
-    }
+    double corner_scale = 1;  ///< part of the reachable speed on curves (G64 R)
     bool isRapid = false;  ///< as fast as the limits allow, scaled by Scales::rapid
     bool isOverridable = true;
     bool isAngular = false;  ///< the feed length is over ABC: the operator's velocity ceiling does not apply

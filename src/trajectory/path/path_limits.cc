@@ -3,9 +3,15 @@
 
 #include <algorithm>
 
-#include "trajectory/tuning.hh"
-
 namespace mw::trajectory {
+
+namespace {
+
+/// Deviation of the curve without a programmed tolerance: part of a line's length, of an arc's radius, and at
+/// least the distance in this time at maximum speed.
+constexpr double FREE_OF_LENGTH = 0.1, FREE_OF_RADIUS = 1e-3, NOMINAL_S = 1e-4;
+
+}  // namespace
 
 PathLimits::PathLimits(double period_s) noexcept : period_s_(period_s) {
     Limits none;
@@ -22,13 +28,13 @@ void PathLimits::set(const Limits &limits) noexcept {
         const double v = limits.velocity[static_cast<std::size_t>(i)];
         const bool isCounted = !geometry::isAngular(i) && v < UNLIMITED;
         nominal_tolerance_ =
-            isCounted ? std::max(nominal_tolerance_, v * PathTuning::NOMINAL_S) : nominal_tolerance_;
+            isCounted ? std::max(nominal_tolerance_, v * NOMINAL_S) : nominal_tolerance_;
     }
 }
 
 double PathLimits::free_tolerance(const Primitive &primitive) const noexcept {
-    return std::max(nominal_tolerance_, primitive.isArc ? PathTuning::FREE_OF_RADIUS * primitive.radius
-                                                        : PathTuning::FREE_OF_LENGTH * primitive.length);
+    return std::max(nominal_tolerance_, primitive.isArc ? FREE_OF_RADIUS * primitive.radius
+                                                        : FREE_OF_LENGTH * primitive.length);
 }
 
 }  // namespace mw::trajectory

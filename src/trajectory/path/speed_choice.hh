@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "trajectory/path/limits.hh"
 #include "trajectory/path_store.hh"
 
 namespace mw::trajectory {

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 
-#include "trajectory/tuning.hh"
 
 namespace mw::trajectory {
 
@@ -87,58 +86,6 @@ double Workspace::tolerance_within(const Primitive &move, double tolerance) cons
     const int turns = static_cast<int>(std::min(std::abs(move.omega) * move.length * PER_RAD, MOST));
     const double share = least_share(move, std::max(FEW, turns), reach);
     return tolerance * (share < 1 ? least_share(move, std::max(MANY, 8 * turns), reach) : share);
-}
-
-namespace {
-
-/// Largest derivatives of each joint along a piece, by differences of the inverse kinematics.
-void sample_rows(const PathStore &store, const Piece &piece, const Workspace &workspace,
-                 LimitRow *rows) noexcept {
-    constexpr int samples = JointTuning::SAMPLES;
-    const double h = std::min(JointTuning::STEP, 0.25 * piece.length);
-    for (int n = 0; n < samples; ++n) {
-        const double x = std::clamp(piece.length * n / (samples - 1), h, piece.length - h);
-        double before[MAX_JOINTS] = {};
-        double at[MAX_JOINTS] = {};
-        double after[MAX_JOINTS] = {};
-        const bool isFound = workspace.map->joints_at(position_at(store, piece, x - h), before) &&
-                             workspace.map->joints_at(position_at(store, piece, x), at) &&
-                             workspace.map->joints_at(position_at(store, piece, x + h), after);
-        for (int j = 0; j < workspace.joints.count && isFound; ++j) {
-            LimitRow &row = rows[j];
-            const double q1 = std::abs(after[j] - before[j]) / (2.0 * h);
-            const double q2 = std::abs(after[j] - 2.0 * at[j] + before[j]) / (h * h);
-            const double noise = 4.0 * 0x1p-52 * std::abs(at[j]) / (h * h);
-            row.q1 = std::max(row.q1, q1);
-            row.q2 = std::max(row.q2, q2 > JointTuning::JITTER + 4.0 * noise ? q2 : 0.0);
-        }
-    }
-}
-
-}  // namespace
-
-SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,
-                             const SpeedLimit &limit) noexcept {
-    const JointLimits &joints = workspace.joints;
-    LimitRow rows[MAX_JOINTS];
-    sample_rows(store, piece, workspace, rows);
-    int used = 0;
-    for (int j = 0; j < joints.count; ++j) {
-        LimitRow row = rows[j];
-        if (row.q1 <= 0 && row.q2 <= 0) {
-            continue;
-        }
-        const auto n = static_cast<std::size_t>(j);
-        // The first derivative grows by the second from one sample to the next.
-        row.q1 = row.q1 * JointTuning::SAMPLING_MARGIN +
-                 row.q2 * piece.length / (2.0 * (JointTuning::SAMPLES - 1));
-        row.q2 *= JointTuning::SAMPLING_MARGIN * JointTuning::SAMPLING_MARGIN;
-        row.velocity = joints.velocity[n];
-        row.acceleration = joints.acceleration[n];
-        rows[used++] = row;
-    }
-    const SpeedLimit lowered = limit_of_rows(rows, used, limit.v);
-    return {lowered.v, AccelBound::least(limit.a, lowered.a, lowered.v)};
 }
 
 }  // namespace mw::trajectory

@@ -55,9 +55,4 @@ struct Workspace {
     double least_share(const Primitive &move, int samples, const PerJoint &reach) const noexcept;
 };
 
-/// The limit of a piece, lowered to what its joints can follow: their derivatives along it by differences of
-/// the inverse kinematics.
-SpeedLimit limit_with_joints(const PathStore &store, const Piece &piece, const Workspace &workspace,
-                             const SpeedLimit &limit) noexcept;
-
 }  // namespace mw::trajectory

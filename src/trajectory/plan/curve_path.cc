@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trajectory/path/stretch.hh"
 
 namespace mw::trajectory::plan {
 
@@ -24,6 +23,7 @@ profile::CurveLimits curve_limits(const Limits &limits) noexcept {
         out.axes[i] = {limits.velocity[i], limits.acceleration[i], limits.jerk[i]};
     }
     out.xyz = {limits.velocity[XYZ_NORM], limits.acceleration[XYZ_NORM], limits.jerk[XYZ_NORM]};
+    out.has_jerk = limits.isJerkLimited;
     return out;
 }
 

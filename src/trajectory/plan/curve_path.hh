@@ -25,6 +25,8 @@ class CurvePath {
 
     /// A path begins at `start`, at the place 0.
     void begin(const Pose &start, const Conditions &conditions);
+    /// It has no move so far.
+    bool isEmpty() const noexcept { return feeds().empty(); }
     /// Appends a move that starts at `end()`. Returns its number.
     Sequence add(const Conditions &conditions, const Primitive &primitive, const MoveRequest &request);
     /// Nothing follows for now: the curve ends at the end of the last move.

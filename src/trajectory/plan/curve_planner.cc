@@ -24,23 +24,10 @@ static_assert(MOST_MOTION_CELLS + MOST_LAST_CELLS + DIRECT_CELLS < MOST_CELLS);
 
 CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s)
     : store_(store), moves_(moves), period_s_(period_s), path_(store, moves),
-      profile_({.window_s = WINDOW_S, .period_s = period_s}) {}
+      third_order_({.window_s = WINDOW_S, .period_s = period_s}), second_order_(WINDOW_S, period_s),
+      timing_(&third_order_) {}
 
-bool CurvePlanner::isFor(const PathDemand &demand, const Conditions &conditions) const noexcept {
-    return demand.drive == PathDemand::Drive::BY_ANGLE || conditions.limits.wanted().isJerkLimited;
-}
-
-bool CurvePlanner::suits(const PathDemand &demand, const Conditions &conditions) const noexcept {
-    const bool is_same = demand.drive == PathDemand::Drive::EITHER || isFor(demand, conditions) == is_active_;
-    return is_same && (!is_active_ || path_.isMadeFor(conditions));
-}
-
-void CurvePlanner::begin(const Pose &start, const Snapshot &now, const PathDemand &demand,
-                         const Conditions &conditions) {
-    is_active_ = isFor(demand, conditions);
-    if (!is_active_) {
-        return;
-    }
+void CurvePlanner::begin(const Pose &start, const Snapshot &now, const Conditions &conditions) {
     path_.begin(start, conditions);
     scales_ = conditions.scales;
     numbers_.clear();
@@ -51,6 +38,16 @@ void CurvePlanner::begin(const Pose &start, const Snapshot &now, const PathDeman
     delay_s_ = 0;
     start_cycle_ = tried_cycle_ = 0;
     failures_ = 0;
+}
+
+Sequence CurvePlanner::add(const Conditions &conditions, const Primitive &primitive,
+                           const MoveRequest &request) {
+    if (path_.isEmpty()) {
+        timing_ = conditions.limits.wanted().isJerkLimited ? static_cast<profile::PathTiming *>(&third_order_)
+                                                           : &second_order_;
+        path_.begin(path_.end(), conditions);
+    }
+    return path_.add(conditions, primitive, request);
 }
 
 void CurvePlanner::release_end(const Conditions &conditions) {
@@ -73,7 +70,7 @@ void CurvePlanner::set_scales(const Conditions &conditions) {
 }
 
 double CurvePlanner::place_of(const Snapshot &now) const noexcept {
-    return now.isOnCurve && now.plan >= first_plan_ ? now.x : 0.0;
+    return now.isOnPath && now.plan >= first_plan_ ? now.x : 0.0;
 }
 
 Sequence CurvePlanner::standing_before(const Snapshot &now) const noexcept {
@@ -129,15 +126,15 @@ void CurvePlanner::follow(const Snapshot &now) {
         is_abandoned_ = is_abandoned_ && is_running_;
         return;
     }
-    const auto at = std::lower_bound(numbers_.begin(), numbers_.end(), now.phase);
-    if (at == numbers_.end() || *at != now.phase) {
+    const auto at = std::lower_bound(numbers_.begin(), numbers_.end(), now.cell);
+    if (at == numbers_.end() || *at != now.cell) {
         is_abandoned_ = true;
         return;
     }
     const auto driven = static_cast<std::size_t>(at - numbers_.begin());
-    profile_.drop(driven);
+    timing_->drop(driven);
     numbers_.erase(numbers_.begin(), at);
-    path_.drop_before(std::min(now.x, profile_.cell(0).c[0]));
+    path_.drop_before(std::min(now.x, timing_->cell(0).c[0]));
 }
 
 void CurvePlanner::update(const Snapshot &now, const Conditions &conditions) {
@@ -185,10 +182,10 @@ void CurvePlanner::start(const Snapshot &now, const Conditions &conditions) {
     if (path_.spans().empty() || !(run_.end_s > s)) {
         return;
     }
-    profile_.begin(path_.on_span_end(s));
+    timing_->begin(path_.on_span_end(s));
     numbers_.clear();
     is_changed_ = is_lower_ = false;
-    const bool is_made = profile_.plan(run_, 0) && profile_.cells() > 0 && commit(now, 0);
+    const bool is_made = timing_->plan(run_, 0) && timing_->cells() > 0 && commit(now, 0);
     failures_ = is_made ? 0 : failures_ + 1;
     is_running_ = is_made;
 }
@@ -227,6 +224,7 @@ void CurvePlanner::start_pass(const Snapshot &now, double s, Sequence move, cons
     }
     plan.plan = plan_ + 1;
     plan.brakes = now.brakes;
+    plan.after = now.plan;
     plan.span = path_.span_at(s);
     plan.move = move;
     plan.last_span = path_.last_span();
@@ -240,10 +238,10 @@ void CurvePlanner::start_pass(const Snapshot &now, double s, Sequence move, cons
 
 /// The first cell that another plan may change.
 std::size_t CurvePlanner::first_free_cell(const Snapshot &now) const noexcept {
-    double left = -now.time_in_phase;
+    double left = -now.time_in_cell;
     std::size_t k = 0;
     while (k < numbers_.size() && left < PLANNING_S) {
-        left += profile_.cell(k++).duration;
+        left += timing_->cell(k++).duration;
     }
     return k;
 }
@@ -260,7 +258,7 @@ void CurvePlanner::continue_plan(const Snapshot &now, const Conditions &conditio
         return;  // too late: the plan ends in its last stop
     }
     path_.extend(conditions);
-    const double from = profile_.cell(fixed).c[0];
+    const double from = timing_->cell(fixed).c[0];
     const double old_end = run_.end_s;
     const bool was_stop = run_.has_stop;
     if (!hasSpeed(path_.move_at(from))) {
@@ -271,24 +269,24 @@ void CurvePlanner::continue_plan(const Snapshot &now, const Conditions &conditio
     }
     profile::Run run = run_from(now.x, now.x, conditions);
     if (is_changed_ && run.end_s < old_end) {
-        const double soonest = profile_.stop(run_, fixed, profile::StopEffort::QUICK).end_s;
+        const double soonest = timing_->stop(run_, fixed, profile::StopEffort::QUICK).end_s;
         run = run_from(now.x, soonest, conditions);
     }
     const bool is_same = run.end_s == old_end && run.has_stop == was_stop;
-    if (profile_.isComplete() && is_same && !is_changed_ && numbers_.size() == profile_.cells()) {
+    if (timing_->isComplete() && is_same && !is_changed_ && numbers_.size() == timing_->cells()) {
         planned_cycle_ = now.cycle;
         return;
     }
     const bool is_nearer = run.end_s < old_end - SAME_PLACE;
-    const bool is_taken_away = profile_.isComplete() && was_stop && !is_same;
+    const bool is_taken_away = timing_->isComplete() && was_stop && !is_same;
     const bool must_slow = is_lower_ || is_nearer || is_taken_away;
-    if (!(must_slow ? profile_.replan(run, fixed) : profile_.plan(run, fixed))) {
+    if (!(must_slow ? timing_->replan(run, fixed) : timing_->plan(run, fixed))) {
         return;  // the plan before stays, with its stops
     }
     run_ = run;
     is_changed_ = is_lower_ = false;
     numbers_.resize(fixed);
-    if (profile_.cells() <= fixed || !commit(now, fixed)) {
+    if (timing_->cells() <= fixed || !commit(now, fixed)) {
         is_abandoned_ = true;
     }
 }
@@ -302,25 +300,25 @@ Sequence CurvePlanner::write(const profile::TimeCell &cell) noexcept {
 /// may hold.
 bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     CurvePlan plan;
-    const std::size_t cells = profile_.cells();
+    const std::size_t cells = timing_->cells();
     double planned = 0;
     for (std::size_t k = fixed; k < cells; ++k) {
-        planned += profile_.cell(k).duration;
+        planned += timing_->cell(k).duration;
     }
-    is_window_full_ = profile_.isComplete() || planned > 0.5 * WINDOW_S;
+    is_window_full_ = timing_->isComplete() || planned > 0.5 * WINDOW_S;
     // The rest of the window is for the stop.
     const double committed =
-        profile_.isComplete() ? RENEWAL_S + RESERVE_S : std::min(RENEWAL_S + RESERVE_S, 0.5 * planned);
+        timing_->isComplete() ? RENEWAL_S + RESERVE_S : std::min(RENEWAL_S + RESERVE_S, 0.5 * planned);
     std::size_t last = fixed;
     double ahead = 0;
     while (last < cells && ahead < committed && last - fixed < MOST_MOTION_CELLS) {
-        ahead += profile_.cell(last++).duration;
+        ahead += timing_->cell(last++).duration;
     }
-    profile_.begin_stops(run_);
+    timing_->begin_stops(run_);
     profile::Stop end{cells, {}, 0};
-    if (last < cells || !profile_.isComplete()) {
+    if (last < cells || !timing_->isComplete()) {
         end = stop_from(last, MOST_LAST_CELLS);
-        if (end.cells.empty() && !profile_.isComplete()) {
+        if (end.cells.empty() && !timing_->isComplete()) {
             return false;
         }
     }
@@ -333,11 +331,12 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     plan.behind = fixed > 0 ? numbers_[fixed - 1] : 0;
     plan.begin = next_cell_;
     for (std::size_t k = fixed; k < last; ++k) {
-        numbers_.push_back(write(profile_.cell(k)));
+        numbers_.push_back(write(timing_->cell(k)));
     }
     plan.end = next_cell_;
     plan.brakes = now.brakes;
-    const double from = profile_.cell(fixed).c[0];
+    plan.after = now.plan;
+    const double from = timing_->cell(fixed).c[0];
     plan.span = path_.span_at(from);
     plan.move = path_.move_at(from);
     plan.last_span = path_.last_span();
@@ -356,9 +355,9 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
 profile::Stop CurvePlanner::stop_from(std::size_t cell, std::size_t most_cells) {
     using profile::StopEffort;
     profile::Stop stop =
-        profile_.next_stop(run_, cell, most_cells > 0 ? StopEffort::PROMPT : StopEffort::QUICK);
+        timing_->next_stop(run_, cell, most_cells > 0 ? StopEffort::PROMPT : StopEffort::QUICK);
     if (stop.cells.size() > std::max(most_cells, profile::DirectStop::PHASES)) {
-        stop = profile_.next_stop(run_, cell, StopEffort::QUICK);
+        stop = timing_->next_stop(run_, cell, StopEffort::QUICK);
     }
     return stop;
 }
@@ -371,19 +370,19 @@ void CurvePlanner::add_stop(CurvePlan &plan, const profile::Stop &stop) noexcept
     plan.stops[plan.stop_count++] = {numbers_[stop.kept - 1], begin, next_cell_};
 }
 
-/// Stops behind cells of the plan before `end`, STOP_APART_S or a small part of the time of a stop apart,
+/// Stops behind cells of the plan before `end`, a small part of the time of a stop apart,
 /// from the last one to the first. In all they have `room` cells, and those of direct stops.
 void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, const profile::Stop &end, std::size_t room) {
     stops_.assign(1, end);
     double ahead = 0;
     for (std::size_t k = fixed; k < end.kept; ++k) {
-        ahead += profile_.cell(k).duration;
+        ahead += timing_->cell(k).duration;
     }
     double since = 0, apart = apart_of(end);
     for (std::size_t k = end.kept; k-- > fixed + 1 && stops_.size() < CurvePlan::MOST_STOPS;) {
-        since += profile_.cell(k).duration;
-        ahead -= profile_.cell(k).duration;
-        if (since < apart) {
+        since += timing_->cell(k).duration;
+        ahead -= timing_->cell(k).duration;
+        if (since < apart && !(fixed == 0 && k == 1)) {
             continue;
         }
         since = 0;
@@ -393,7 +392,8 @@ void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, const profile::
         if (late > apart && late < apart_of(stop)) {
             stop = stop_from(k, room);
         }
-        if (stop.kept >= stops_.back().kept) {
+        if (stop.kept >= stops_.back().kept ||
+            stop.cells.size() > std::max(room, profile::DirectStop::PHASES)) {
             continue;
         }
         apart = apart_of(stop);
@@ -407,12 +407,12 @@ void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, const profile::
 }
 
 /// Time from the start of the stop before to that of this one.
-double CurvePlanner::apart_of(const profile::Stop &stop) noexcept {
+double CurvePlanner::apart_of(const profile::Stop &stop) const noexcept {
     double duration = 0;
     for (const profile::TimeCell &cell : stop.cells) {
         duration += cell.duration;
     }
-    return std::max(STOP_APART_S, STOP_APART * duration);
+    return timing_->stops_apart_s(duration);
 }
 
 }  // namespace mw::trajectory::plan

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "trajectory/plan/curve_path.hh"
+#include "trajectory/profile/acceleration_profile.hh"
 #include "trajectory/profile/profile.hh"
 
 namespace mw::trajectory::plan {
@@ -16,16 +17,16 @@ namespace mw::trajectory::plan {
 /// not taken: the executor takes the last stop of the plan before, and the next plan begins at rest.
 class CurvePlanner {
   public:
-    /// Paths with jerk limits are driven along curves, and passes that follow the angle of a spindle.
     CurvePlanner(PathStore &store, PlannedPath &moves, double period_s);
 
     /// A path begins at `start`, where the executor is at rest.
-    void begin(const Pose &start, const Snapshot &now, const PathDemand &demand,
-               const Conditions &conditions);
-    /// The present path is driven along a curve.
-    bool isActive() const noexcept { return is_active_; }
-    /// A path that begins with such a move would be driven by the same planner, with the same limits.
-    bool suits(const PathDemand &demand, const Conditions &conditions) const noexcept;
+    void begin(const Pose &start, const Snapshot &now, const Conditions &conditions);
+    /// The present path was made for the present limits and joints.
+    bool suits(const Conditions &conditions) const noexcept {
+        return path_.isEmpty() || path_.isMadeFor(conditions);
+    }
+    /// Appends a move that starts at the end of the path. The limits are those at the first move.
+    Sequence add(const Conditions &conditions, const Primitive &primitive, const MoveRequest &request);
     CurvePath &path() noexcept { return path_; }
     const CurvePath &path() const noexcept { return path_; }
     /// Overrides have changed.
@@ -55,12 +56,9 @@ class CurvePlanner {
     static constexpr double RENEWAL_S = 0.2;   ///< from one plan to the next
     static constexpr double RESERVE_S = 0.15;  ///< by which a plan may be late
     static constexpr double WINDOW_S = 0.45;   ///< planned at once, and the time of a stop
-    /// Between the places where stops begin, as a time and as a part of the time of a stop.
-    static constexpr double STOP_APART_S = 0.01, STOP_APART = 0.12;
     static constexpr double PLANNING_S = 0.01;  ///< from the making of a plan to its first cell
 
   private:
-    bool isFor(const PathDemand &demand, const Conditions &conditions) const noexcept;
     double place_of(const Snapshot &now) const noexcept;
     void follow(const Snapshot &now);
     void start(const Snapshot &now, const Conditions &conditions);
@@ -73,16 +71,17 @@ class CurvePlanner {
     profile::Stop stop_from(std::size_t cell, std::size_t most_cells);
     void add_stop(CurvePlan &plan, const profile::Stop &stop) noexcept;
     void add_stops(CurvePlan &plan, std::size_t fixed, const profile::Stop &end, std::size_t room);
-    static double apart_of(const profile::Stop &stop) noexcept;
+    double apart_of(const profile::Stop &stop) const noexcept;
     Sequence write(const profile::TimeCell &cell) noexcept;
 
     PathStore &store_;
     PlannedPath &moves_;
     double period_s_;
-    bool is_active_ = false;
     CurvePath path_;
     Scales scales_;  ///< that the feeds of the path were made for
-    profile::Profile profile_;
+    profile::Profile third_order_;               ///< with jerk limits
+    profile::AccelerationProfile second_order_;  ///< without
+    profile::PathTiming *timing_;                ///< that of the present path
     profile::Run run_;
     std::vector<profile::Stop> stops_;  ///< of the plan that is being committed
     std::vector<Sequence> numbers_;     ///< of the cells of the profile that are committed

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trajectory/path/stretch.hh"
 #include "trajectory/plan/chosen_speed.hh"
 
 namespace mw::trajectory::plan {

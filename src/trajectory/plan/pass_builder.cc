@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trajectory/path/stretch.hh"
 
 namespace mw::trajectory::plan {
 

@@ -6,7 +6,6 @@
 
 #include "trajectory/follow/spindle_pursuit.hh"
 #include "trajectory/path/line_joints.hh"
-#include "trajectory/path/stretch.hh"
 #include "trajectory/plan/pass_builder.hh"
 #include "trajectory/tuning.hh"
 

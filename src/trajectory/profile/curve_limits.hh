@@ -16,6 +16,7 @@ struct Bounds {
 struct CurveLimits {
     std::array<Bounds, geometry::AXIS_COUNT> axes;
     Bounds xyz;  ///< of the norm over X Y Z
+    bool has_jerk = true;  ///< the machine has jerk limits
 };
 
 /// Axes, the norm over X Y Z and joints, in this order.

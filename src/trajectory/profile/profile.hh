@@ -6,8 +6,10 @@
 // or stopped early can be driven.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
+#include "trajectory/profile/path_timing.hh"
 #include "trajectory/profile/speed_plan.hh"
 #include "trajectory/profile/stop_search.hh"
 #include "trajectory/profile/time_law.hh"
@@ -19,65 +21,30 @@ struct ProfileSettings {
     double period_s = 1e-3;  ///< of the servo thread: limits hold for samples so far apart
 };
 
-/// A stop: the first `kept` cells of the plan, then these cells.
-struct Stop {
-    std::size_t kept = 0;
-    std::vector<TimeCell> cells;
-    double end_s = 0;
-};
-
-enum class StopEffort : std::uint8_t {
-    QUICK,   ///< from the first place from which a direct stop keeps all limits
-    PROMPT,  ///< for the stops of every plan: QUICK where that is little later than any stop could be
-    SOONEST  ///< the motion before the direct stop is the slowest one, too
-};
-
-/// Planner thread. Cells that were planned stay in it until they are dropped, so that another motion can
-/// begin at the start of each.
-class Profile {
+/// Planner thread. Within velocity, acceleration and jerk.
+class Profile final : public PathTiming {
   public:
     explicit Profile(const ProfileSettings &settings) : settings_(settings) {}
 
-    /// A run begins, at rest at `s`.
-    void begin(double s) noexcept;
-    /// Plans a window of the run behind the first `fixed` cells, which stay. The limits are those of the last
-    /// plan or higher, the end of the run the same or farther away. False if it is rejected: the plan that it
-    /// would start from leaves a limit by more than rounding. Then the plan before stays, with its creep and
-    /// its stops, and more of the curve or another place to start may help.
-    bool plan(const Run &run, std::size_t fixed);
-    /// The soonest stop that keeps every limit of `run`, not before the start of cell `fixed`. The plan stays
-    /// as it is.
-    Stop stop(const Run &run, std::size_t fixed, StopEffort effort) {
-        begin_stops(run);
-        return next_stop(run, fixed, effort);
-    }
-    /// The same for many stops of one plan within `run`, from the last one to the first: the slowest motion
-    /// from a place, behind the plan up to there, is where that from an earlier place begins to be looked
-    /// for, and direct stops are looked for once.
-    void begin_stops(const Run &run);
-    Stop next_stop(const Run &run, std::size_t fixed, StopEffort effort);
-    /// As plan(), after limits of speed were lowered, or the end of the run came nearer (not nearer than the
-    /// soonest stop), or was taken away. The speed may be above a lowered limit as long as the soonest
-    /// braking needs; acceleration and jerk never. An end that is so near that the plan brakes for it stays:
-    /// the run resumes with begin(). False if it is rejected as in plan(): the speed stays as it was.
-    bool replan(const Run &run, std::size_t fixed);
-    /// Cells that are planned and not dropped.
-    std::size_t cells() const noexcept {
+    void begin(double s) noexcept override;
+    bool plan(const Run &run, std::size_t fixed) override;
+    bool replan(const Run &run, std::size_t fixed) override;
+    /// The slowest motion from a place, behind the plan up to there, is where that from an earlier place
+    /// begins to be looked for, and direct stops are looked for once.
+    void begin_stops(const Run &run) override;
+    Stop next_stop(const Run &run, std::size_t fixed, StopEffort effort) override;
+    double stops_apart_s(double stop_s) const noexcept override { return std::max(1e-2, 0.12 * stop_s); }
+    std::size_t cells() const noexcept override {
         return plan_.ends_early ? ending_at_ + ending_.size() : plan_.laid();
     }
-    const TimeCell &cell(std::size_t k) const noexcept {
+    const TimeCell &cell(std::size_t k) const noexcept override {
         return plan_.ends_early && k >= ending_at_ ? ending_[k - ending_at_] : plan_.time_cells[k];
     }
-    /// The last cell ends in a stop, at `end_s`: that of the run, or one that was
-    /// planned before and is too near to be changed.
-    bool isComplete() const noexcept { return plan_.has_end || plan_.ends_early; }
-    double end_s() const noexcept { return plan_.ends_early ? ending_s_ : planned_s(); }
-    /// The first `count` cells are driven.
-    void drop(std::size_t count);
+    bool isComplete() const noexcept override { return plan_.has_end || plan_.ends_early; }
+    double end_s() const noexcept override { return plan_.ends_early ? ending_s_ : planned_s(); }
+    void drop(std::size_t count) override;
+    double drivable_s() const noexcept override { return joint_curve_.drivable_s(); }
 
-    /// From here on there are poses without joints, or joints that jump: the motion stops before. 1e300: not
-    /// on the known curve.
-    double drivable_s() const noexcept { return joint_curve_.drivable_s(); }
     /// Largest row over its limit of the plan that the last one started from.
     double worst_start() const noexcept { return worst_start_; }
     /// Plans that were rejected, and the largest row over its limit that they would have started from.

@@ -27,16 +27,18 @@ PerLimited sizes_of(const Pose &p) noexcept {
     return out;
 }
 
-double jerk_of(const Bounds &b, double period_s) noexcept {
-    return std::min(b.jerk, b.acceleration / std::max(LEAST_RAMP_S, 2 * period_s));
+/// Without jerk limits: that of a full acceleration within one period.
+double jerk_of(const Bounds &b, double period_s, bool has_jerk) noexcept {
+    return has_jerk ? std::min(b.jerk, b.acceleration / std::max(LEAST_RAMP_S, 2 * period_s))
+                    : b.acceleration / period_s;
 }
 
 /// Lowers limits along the path to those of something that has this derivative.
-void lower(Bounds &along, const Bounds &b, double first, double period_s) noexcept {
+void lower(Bounds &along, const Bounds &b, double first, double period_s, bool has_jerk) noexcept {
     const double q1 = std::max(first, LEAST);
     along.velocity = std::min(along.velocity, b.velocity / q1);
     along.acceleration = std::min(along.acceleration, b.acceleration / q1);
-    along.jerk = std::min(along.jerk, jerk_of(b, period_s) / q1);
+    along.jerk = std::min(along.jerk, jerk_of(b, period_s, has_jerk) / q1);
 }
 
 /// Limits along a path with the tangent `first`.
@@ -44,7 +46,7 @@ Bounds along(const Pose &first, const CurveLimits &limits, double period_s) noex
     Bounds out;
     const PerLimited sizes = sizes_of(first);
     for (std::size_t i = 0; i < LIMITED_COUNT; ++i) {
-        lower(out, bounds_of(limits, i), sizes[i], period_s);
+        lower(out, bounds_of(limits, i), sizes[i], period_s, limits.has_jerk);
     }
     return out;
 }
@@ -56,15 +58,15 @@ double reach_of(double v, double acceleration, double period_s) noexcept {
 
 /// Takes one more limit and the jumps of what it limits.
 void take(SpeedCap &cap, std::size_t i, const Bounds &b, double turn, double bend) noexcept {
-    const double jerk = jerk_of(b, cap.period_s);
+    const double jerk = jerk_of(b, cap.period_s, cap.has_jerk);
     cap.turn[i] = turn / (cap.period_s * cap.period_s);
-    cap.bend[i] = 0.75 * bend / cap.period_s;
+    cap.bend[i] = cap.has_jerk ? 0.75 * bend / cap.period_s : 0.0;
     cap.v = std::min({cap.v, TURN_SHARE * jerk / std::max(cap.turn[i], LEAST),
                       std::sqrt(jerk / std::max(cap.bend[i], LEAST))});
 }
 
 bool isTaken(const SpeedCap &cap, std::size_t i, const Bounds &b) noexcept {
-    return cap.v * (cap.turn[i] + cap.bend[i] * cap.v) > NEGLIGIBLE * jerk_of(b, cap.period_s);
+    return cap.v * (cap.turn[i] + cap.bend[i] * cap.v) > NEGLIGIBLE * jerk_of(b, cap.period_s, cap.has_jerk);
 }
 
 }  // namespace
@@ -87,6 +89,7 @@ SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, const JointM
     SpeedCap cap;
     cap.s = seam.s;
     cap.period_s = period_s;
+    cap.has_jerk = limits.has_jerk;
     for (std::size_t i = 0; i < LIMITED_COUNT; ++i) {
         take(cap, i, bounds_of(limits, i), turn[i], bend[i]);
     }
@@ -95,8 +98,8 @@ SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, const JointM
         for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count); ++j) {
             const Bounds b = bounds_of(joints, j);
             take(cap, JOINTS_AT + j, b, jump.first[j], jump.second[j]);
-            lower(before, b, jump.before[j], period_s);
-            lower(after, b, jump.after[j], period_s);
+            lower(before, b, jump.before[j], period_s, limits.has_jerk);
+            lower(after, b, jump.after[j], period_s, limits.has_jerk);
         }
         cap.is_stop = !jump.exists;
     }

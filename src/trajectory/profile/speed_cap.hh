@@ -24,6 +24,7 @@ struct SpeedCap {
     bool is_stop = false;  ///< a stop is needed: the run ends here
     double reach = 0;      ///< length on both sides within which the smooth part takes the rest of the limits
     double period_s = 1e-3;
+    bool has_jerk = true;  ///< of the limits
     PerBounds turn{};  ///< jerk over v: |dq'|/T^2
     PerBounds bend{};  ///< jerk over v^2: 3/4 |dq''|/T
 };

@@ -236,27 +236,6 @@ class Maker {
     bool isMixed_;
 };
 
-/// Blends against the corner path they replace, point by point: an upper bound of the Frechet distance.
-inline double worst_blend_deviation(const Rig &rig, Sequence first, Sequence last) {
-    double worst = 0;
-    for (Sequence k = first; k <= last; ++k) {
-        const Piece &p = rig.store->piece(k);
-        if (!(p.blend_d > 0)) {
-            continue;
-        }
-        const Primitive &a = rig.store->primitive(p.primitive);
-        const Primitive &b = rig.store->primitive(p.primitive + 1);
-        for (int i = 0; i <= 50; ++i) {
-            const double x = p.length * i / 50;
-            const double z = p.offset + x;
-            const double from = a.length - p.blend_d;
-            const Pose on = z < p.blend_d ? position_at(a, from + z) : position_at(b, z - p.blend_d);
-            worst = std::max(worst, testing::pose_distance(position_at(*rig.store, p, x), on));
-        }
-    }
-    return worst;
-}
-
 /// Discrete Frechet, decided in order: the samples against the programmed path, which is sampled finely.
 inline bool isInOrder(const std::vector<Pose> &samples, const Program &program, double tolerance) {
     std::vector<Pose> path;
@@ -331,7 +310,7 @@ inline double allowed_deviation(const Program &program) {
     if (program.join != geometry::PathMode::BLEND) {
         return 1e-6;
     }
-    if (program.tolerance > 0 || !program.limits.isJerkLimited) {
+    if (program.tolerance > 0) {
         return program.tolerance;
     }
     double allowed = 0;
@@ -348,7 +327,6 @@ inline double allowed_deviation(const Program &program) {
 struct Outcome {
     Rig rig{Pose{}};
     bool isFinished = false;
-    double worst_blend = 0;
 };
 
 /// Drives the program with random holds, overrides and planner hiccups.
@@ -361,9 +339,8 @@ inline void drive(Maker &maker, const Program &program, Outcome &out, bool isDro
         room_of(program, low, high);
         rig.planner.set_room(low, high);
     }
-    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.demand_of(program.requests.front()));
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
     Scales scales;
-    scales.max_feed = 1.5;
     rig.planner.set_scales(scales);
     std::size_t fed = 0;
     bool isHeld = false;

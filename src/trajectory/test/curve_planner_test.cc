@@ -39,9 +39,9 @@ TEST(CurvePlanner, DrivesAProgram) {
         const Program program = program_of(seed, maker);
         Rig rig{Pose{}};
         rig.planner.set_limits(program.limits);
-        rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.demand_of(program.requests.front()));
+        rig.planner.begin(Pose{}, rig.executor.snapshot());
         for (std::size_t k = 0; k < program.primitives.size(); ++k) {
-            while (!rig.planner.hasRoom(rig.executor.snapshot())) {
+            while (!rig.planner.hasRoom()) {
                 rig.step();
             }
             rig.planner.add(program.primitives[k], program.requests[k]);
@@ -78,7 +78,7 @@ PassedCorner pass_corner(double corner_scale) {
     r.tolerance = 0.5;
     r.corner_scale = corner_scale;
     const Primitive a = make_line(Pose{}, place(20, 0));
-    rig.planner.begin(Pose{}, rig.executor.snapshot(), rig.planner.demand_of(r));
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
     rig.planner.add(a, r);
     rig.planner.add(make_line(place(20, 0), place(20, 20)), r);
     EXPECT_TRUE(rig.run(10));
@@ -198,10 +198,10 @@ TEST(CurvePlanner, DrivesMoreMovesThanThereIsRoomFor) {
     request.tag.requested_velocity = 300;
     Pose at;
     for (int n = 1; n <= MOVES; ++n) {
-        for (int waited = 0; waited < 5000 && !rig.planner.hasRoom(rig.executor.snapshot()); ++waited) {
+        for (int waited = 0; waited < 5000 && !rig.planner.hasRoom(); ++waited) {
             rig.step();
         }
-        ASSERT_TRUE(rig.planner.hasRoom(rig.executor.snapshot()))
+        ASSERT_TRUE(rig.planner.hasRoom())
             << "move " << n << ", driven " << rig.executor.snapshot().done_move << " to "
             << rig.executor.snapshot().x;
         Pose to;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The servo side alone: commits made by hand, without a planner.
+// The servo side alone: plans made by hand, without a planner.
+#include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <vector>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -13,16 +13,28 @@
 namespace mw::trajectory::test {
 namespace {
 
-constexpr double V = 50, A = 1000;
+constexpr double V = 50, A = 1000, LENGTH = 100;
+constexpr double CELL_S = 0.01;
+/// Cells of the motion with a stop behind each.
+constexpr Sequence CELLS = 20;
 
-/// One straight piece along X, and phases up to a speed that they keep.
-struct ServoRig : Parts {
+/// One straight move along X.
+struct ServoRig {
+    std::unique_ptr<PathStore> store = std::make_unique_for_overwrite<PathStore>();
     Executor executor{*store, PERIOD};
     std::uint64_t cycle = 0;
 
-    ServoRig() : Parts(even_limits(V, A)) {
-        path->begin();
-        add_straight(100, V, A);
+    ServoRig() {
+        curve::Span span;
+        span.length = LENGTH;
+        span.c[1][0] = LENGTH;
+        span.find_moving();
+        store->span(1) = span;
+        MoveTag tag;
+        tag.end_s = LENGTH;
+        tag.end = at(LENGTH);
+        store->move(1) = tag;
+        store->last_move.store(1);
         executor.set_position(Pose{});
         step(1);
     }
@@ -35,21 +47,27 @@ struct ServoRig : Parts {
     }
     double x() const { return executor.output().position[0]; }
     double v() const { return executor.snapshot().v; }
-    Commit plan(std::uint64_t number, Sequence begin, Sequence end) const {
-        Commit c;
-        c.plan = number;
-        c.isSwitch = true;
-        c.switch_cycle = cycle + 1;
-        c.brakes = executor.snapshot().brakes;
-        c.begin = begin;
-        c.end = end;
-        return c;
+    /// Up to V in 0.05 s, then level; a stop follows behind every cell.
+    CurvePlan plan(std::uint64_t number) {
+        CurvePlan out;
+        out.plan = number;
+        out.begin = 1;
+        out.end = CELLS + 1;
+        out.brakes = executor.snapshot().brakes;
+        out.span = out.move = out.last_span = out.last_move = 1;
+        double s = 0, v = 0;
+        for (Sequence k = 1; k <= CELLS; ++k) {
+            const double a = k <= 5 ? A : 0.0;
+            store->cell(k) = {CELL_S, {s, v, 0.5 * a, 0, 0, 0}};
+            s = store->cell(k).s_at(CELL_S);
+            v = store->cell(k).v_at(CELL_S);
+            store->cell(100 + k) = {v / A, {s, v, -0.5 * A, 0, 0, 0}};
+            out.stops[out.stop_count++] = {k, 100 + k, 101 + k};
+        }
+        return out;
     }
-    /// Up to V in 0.05 s, then level for `level_s`; it does not end in a stop.
-    void start(double level_s) {
-        store->phase(1) = {1, V / A, 0, 0, A, 0};
-        store->phase(2) = {1, level_s, 0.5 * V * V / A, V, 0, 0};
-        ASSERT_TRUE(store->commits.push(plan(1, 1, 3)));
+    void start() {
+        ASSERT_TRUE(store->curve_plans.push(plan(1)));
         step(1);
     }
     /// Steps until it stops; the largest change of speed in a cycle meanwhile.
@@ -66,10 +84,10 @@ struct ServoRig : Parts {
     }
 };
 
-TEST(Executor, FollowsPhasesToTheCycle) {
+TEST(Executor, FollowsCellsToTheCycle) {
     ServoRig rig;
-    rig.start(0.5);
-    for (int n = 1; n <= 300; ++n) {
+    rig.start();
+    for (int n = 2; n <= 150; ++n) {
         rig.step(1);
         const double t = n * PERIOD;
         const double up = std::min(t, V / A);
@@ -77,30 +95,29 @@ TEST(Executor, FollowsPhasesToTheCycle) {
     }
 }
 
-TEST(Executor, BrakesAlongThePathWhenPhasesRunOut) {
+TEST(Executor, StopsOnThePathWhenCellsRunOut) {
     ServoRig rig;
-    rig.start(0.1);
+    rig.start();
     rig.step(149);
-    const std::uint64_t brakes = rig.executor.snapshot().brakes;
     EXPECT_LE(rig.stop(), A * PERIOD * (1 + 1e-9));
-    EXPECT_EQ(rig.executor.snapshot().brakes, brakes + 1);
-    EXPECT_NEAR(rig.x(), V * V / A + V * 0.1, 1e-9);
+    EXPECT_NEAR(rig.x(), V * V / A + V * (static_cast<double>(CELLS) * CELL_S - V / A), 1e-9);
     EXPECT_FALSE(rig.executor.isEmpty());
 }
 
-TEST(Executor, AHoldBrakesInTheSameCycleAndVoidsWhatWasPlanned) {
+TEST(Executor, AHoldTakesTheNextStopAndVoidsAPlanThatWasMadeBefore) {
     ServoRig rig;
-    rig.start(0.5);
+    rig.start();
     rig.step(100);
-    const Commit stale = rig.plan(2, 1, 3);
+    const CurvePlan stale = rig.plan(2);
+    const double from = rig.x();
     rig.executor.hold(true);
-    rig.step(1);
-    EXPECT_LT(rig.v(), V);
     EXPECT_LE(rig.stop(), A * PERIOD * (1 + 1e-9));
+    EXPECT_LE(rig.x() - from, V * CELL_S + 0.5 * V * V / A + 1e-9);
+    rig.step(1);
     rig.executor.hold(false);
-    Commit late = stale;
-    late.switch_cycle = rig.cycle + 1;
-    ASSERT_TRUE(rig.store->commits.push(late));
+    rig.executor.hold(true);
+    rig.executor.hold(false);
+    ASSERT_TRUE(rig.store->curve_plans.push(stale));
     rig.step(3);
     EXPECT_TRUE(rig.executor.isAtRest());
 }
@@ -110,28 +127,15 @@ TEST(Executor, WhileHeldNoPlanIsTaken) {
         ServoRig rig;
         rig.executor.hold(isHeld);
         rig.step(1);
-        rig.store->phase(1) = {1, 0.02, 0, 0, A, 0};
-        rig.store->phase(2) = {1, 0.02, 0.2, 20, -A, 0};
-        ASSERT_TRUE(rig.store->commits.push(rig.plan(1, 1, 3)));
+        ASSERT_TRUE(rig.store->curve_plans.push(rig.plan(1)));
         rig.step(2);
-        EXPECT_EQ(rig.executor.snapshot().motion == Motion::FOLLOW, !isHeld);
+        EXPECT_EQ(rig.executor.snapshot().motion == Motion::CURVE, !isHeld);
     }
-}
-
-TEST(Executor, APlanThatComesTooLateIsNotTaken) {
-    ServoRig rig;
-    rig.store->phase(1) = {1, 1, 0, 0, 10, 0};
-    Commit c = rig.plan(1, 1, 2);
-    rig.step(5);
-    ASSERT_TRUE(rig.store->commits.push(c));
-    rig.step(5);
-    EXPECT_TRUE(rig.executor.isAtRest());
-    EXPECT_EQ(rig.executor.snapshot().plan, 0U);
 }
 
 TEST(Executor, ADropStopsAndLeavesNothing) {
     ServoRig rig;
-    rig.start(0.5);
+    rig.start();
     rig.step(100);
     rig.executor.drop();
     EXPECT_LE(rig.stop(), A * PERIOD * (1 + 1e-9));
@@ -147,8 +151,8 @@ TEST(Executor, AnEventIsDueWhenItsMoveIsCompleteAndNeverOnAnotherPath) {
     other.drops = 7;
     ASSERT_TRUE(rig.store->events.push(other));
     ASSERT_TRUE(rig.store->events.push(here));
-    rig.start(0.1);
-    rig.store->piece(1).length = V * V / A + V * 0.1;
+    rig.store->move(1).end_s = V * V / A + V * (static_cast<double>(CELLS) * CELL_S - V / A);
+    rig.start();
     rig.step(190);
     EXPECT_EQ(rig.executor.due_event(), nullptr);
     rig.stop();

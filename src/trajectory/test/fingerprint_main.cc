@@ -28,7 +28,7 @@ JointLimits table_limits(Maker &maker) {
     return l;
 }
 
-/// Feeds per revolution, gates and joining at random places of a program.
+/// Feeds per revolution and gates at random places of a program.
 void vary(Maker &maker, Program &p) {
     bool isFirst = false;
     double per_revolution = 0;
@@ -46,8 +46,6 @@ void vary(Maker &maker, Program &p) {
         isFirst = false;
         r.isOverridable = !maker.chance(0.1);
         r.corner_scale = maker.chance(0.1) ? 0.5 : 1.0;
-        r.isMergeAdded = maker.chance(0.02);
-        r.set_merge(maker.chance(0.3) ? 0.5 * p.tolerance : 0.0);
         r.tag.isProbe = maker.chance(0.01);
     }
 }
@@ -92,7 +90,7 @@ struct Drive {
         hash.add(rig.executor.output().velocity);
         hash.add(static_cast<double>(rig.planner.moves_left(now) + rig.planner.next_block(now)));
         hash.add((rig.planner.isStarving() ? 1.0 : 0.0) + (rig.planner.hasNext(now) ? 2.0 : 0.0) +
-                 (rig.planner.take_trouble().isStuck ? 4.0 : 0.0) + (rig.planner.hasRoom(now) ? 8.0 : 0.0));
+                 (rig.planner.take_trouble().isStuck ? 4.0 : 0.0) + (rig.planner.hasRoom() ? 8.0 : 0.0));
     }
     bool isOver() const {
         return rig.executor.isAtRest() && rig.executor.snapshot().done_move >= rig.planner.last_move();
@@ -103,9 +101,8 @@ struct Drive {
         const int drop_at = maker.chance(0.2) ? maker.whole(100, 5000) : -1;
         bool isHeld = false;
         for (int n = 0; n < most_cycles; ++n) {
-            const Snapshot &now = rig.executor.snapshot();
             const int batch = maker.chance(0.02) ? maker.whole(1, 30) : 0;
-            for (int i = 0; i < batch && fed < program.primitives.size() && rig.planner.hasRoom(now);
+            for (int i = 0; i < batch && fed < program.primitives.size() && rig.planner.hasRoom();
                  ++i, ++fed) {
                 rig.planner.add(program.primitives[fed], program.requests[fed]);
                 if (maker.chance(0.01)) {
@@ -169,7 +166,6 @@ void fingerprint(unsigned seed) {
     Rig rig{Pose{}};
     rig.planner_period = seed % 6 == 0 ? 2 : 5;  // 2: a plan is made while the one before it waits
     Drive drive{.maker = maker, .rig = rig, .scales = {}, .hash = {}};
-    drive.scales.max_feed = 1.5;
     drive.rps = maker.real(-15, 15);
     int finished = 0;
     const int paths = maker.whole(1, 4);
@@ -187,7 +183,7 @@ void fingerprint(unsigned seed) {
         low.c.fill(maker.chance(0.5) ? -1.0 : -1e300);
         high.c.fill(1e300);
         rig.planner.set_room(low, high);
-        rig.planner.begin(from, rig.executor.snapshot(), rig.planner.demand_of(program.requests.front()));
+        rig.planner.begin(from, rig.executor.snapshot());
         finished += drive.run_path(program, 40000) ? 1 : 0;
     }
     std::printf("%u %d of %d paths, %llu cycles, %016llx\n", seed, finished, paths,

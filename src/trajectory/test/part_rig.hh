@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What tests of single parts begin with: plain limits, a path of lines, pieces and phases made by hand.
+// What tests of single parts begin with: plain limits and moves.
 #pragma once
 
-#include <memory>
-
-#include "trajectory/path/path_builder.hh"
-#include "trajectory/timing/speed_profile.hh"
+#include "trajectory/path/limits.hh"
+#include "trajectory/path/move_request.hh"
 
 namespace mw::trajectory::test {
 
@@ -46,33 +44,5 @@ inline MoveRequest asking(double feed, geometry::PathMode join = geometry::PathM
     r.tolerance = tolerance;
     return r;
 }
-
-/// A path and its conditions, without a planner.
-struct Parts {
-    std::unique_ptr<PathStore> store = std::make_unique_for_overwrite<PathStore>();
-    std::unique_ptr<PlannedPath> path = std::make_unique<PlannedPath>(*store);
-    Conditions conditions{PERIOD};
-
-    explicit Parts(const Limits &limits) { conditions.limits.set(limits); }
-    PathView view() const { return {*path, conditions}; }
-
-    /// A straight move along X from where the path ends, as one piece.
-    Sequence add_straight(double length, double v_limit, double a, bool isStopBefore = false) {
-        const double start = path->programmed_length();
-        const Sequence n = path->append_move();
-        path->primitive(n) = make_line(at(start), at(start + length));
-        PlannedMove &m = path->move(n);
-        m = {};
-        m.start_s = start;
-        Piece piece;
-        piece.primitive = n;
-        piece.move = n;
-        piece.length = length;
-        piece.isToEnd = true;
-        piece.acceleration = AccelBound::constant(a);
-        path->append_piece(piece, {v_limit, isStopBefore});
-        return path->last_piece();
-    }
-};
 
 }  // namespace mw::trajectory::test

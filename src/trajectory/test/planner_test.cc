@@ -81,29 +81,6 @@ TEST(Planner, BlendKeepsToleranceAndSpeed) {
     EXPECT_GT(nearest, 0.05);
 }
 
-/// How far the path stays off an end that a line was joined over.
-double joined_deviation(bool isAdded) {
-    Rig rig{Pose{}};
-    rig.planner.set_limits(plain_limits());
-    MoveRequest r = feed(50, geometry::PathMode::BLEND, 0.01);
-    r.merge_tolerance = 0.05;
-    r.isMergeAdded = isAdded;
-    rig.planner.add(make_line(Pose{}, at(5, 0.04)), r);
-    rig.planner.add(make_line(at(5, 0.04), at(10, 0)), r);
-    EXPECT_TRUE(rig.run(10));
-    expect_within(rig, plain_limits());
-    double nearest = 100;
-    for (const Pose &p : rig.samples) {
-        nearest = std::min(nearest, std::abs(p[0] - 5) < 0.1 ? std::abs(p[1] - 0.04) : 100);
-    }
-    return nearest;
-}
-
-TEST(Planner, JoiningStaysWithinPUnlessItMayAddToIt) {
-    EXPECT_LE(joined_deviation(false), 0.01);
-    EXPECT_NEAR(joined_deviation(true), 0.04, 1e-9);
-}
-
 TEST(Planner, LostPlannerMeansAStopOnThePath) {
     Rig rig{Pose{}};
     rig.planner.set_limits(plain_limits());
@@ -148,7 +125,7 @@ void expect_told(const Limits &limits) {
     joints.jerk[0] = 5000;
     rig.planner.set_limits(limits);
     rig.planner.set_joints(&map, joints);
-    rig.planner.begin(Pose{}, rig.executor.snapshot(), {PathDemand::Drive::BY_TIME});
+    rig.planner.begin(Pose{}, rig.executor.snapshot());
     Pose end;
     end[0] = 10;
     rig.planner.add(make_line(Pose{}, end), {});

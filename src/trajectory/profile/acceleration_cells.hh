@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Cells of a curve for motion within velocity and acceleration, and what the limits allow in each.
+//
+// In a cell the path acceleration a is constant, so the squared speed b is linear along it. The limits hold at
+// both ends of a cell, each as a row |a + c b| <= r of a and the squared speed at the start. A cell is so short
+// that between its ends a limit is exceeded by at most the part BETWEEN, whatever motion the rows allow.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "trajectory/profile/point_limits.hh"
+
+namespace mw::trajectory::profile {
+
+/// The path accelerations that a cell allows at a squared speed at its start, and their derivatives by it.
+struct AccelerationRange {
+    double low = -1e300, high = 1e300;
+    double low_slope = 0, high_slope = 0;
+};
+
+struct AccelerationCell {
+    struct End {
+        double machine_b = 1e300;   ///< squared speed at the velocity limits of the machine
+        double curve_b = 1e300;     ///< squared speed at which the curve alone takes an acceleration limit
+        double xyz2 = 0, uvw2 = 0;  ///< squared derivatives of the lengths over X Y Z and U V W
+    };
+    double s = 0, length = 0;
+    std::array<End, 2> ends;
+    std::array<PointLimits::Norm, 2> norms;  ///< of a and the squared speed at the start
+    bool has_norm = false;
+    bool is_straight = false;  ///< the same acceleration is allowed at every speed
+    double least = 0;          ///< path acceleration that is allowed in both directions at standstill
+    double most_b = 1e300;     ///< squared speed at the start that the curve allows
+    double cap_b = 1e300;      ///< squared speed that seams allow
+    std::size_t row = 0, rows = 0;
+    double end_s() const noexcept { return s + length; }
+};
+
+/// Cells in the order of the curve.
+class AccelerationCells {
+  public:
+    /// Part of a limit by which it may be exceeded between the ends of a cell.
+    static constexpr double BETWEEN = 2e-3;
+    /// Longest time of a cell, about [s].
+    static constexpr double CELL_S = 1e-3;
+
+    /// No cells; the next one begins at `s`.
+    void begin(double s) noexcept;
+    /// Removes cells that end at or before `s`.
+    void drop_before(double s);
+    /// Removes cells that end after `s`.
+    void cut_behind(double s);
+    /// Adds the next cell, not beyond `end`. Where the curve is not straight it takes at most about CELL_S from
+    /// the squared speed `b`, or to a stop at `end`.
+    void lay(const Run &run, double end, double b);
+    /// Divides the only cell, from `s` on, so that a motion can begin and end in it.
+    void divide(const Run &run, double s);
+    /// Parts of cells that are not among the others: what is left of the first one, the last one up to an end
+    /// in it, and the start of a stop.
+    enum class Part : std::uint8_t { HEAD, TAIL, STOP };
+    /// The part of a cell from `s` on, up to `end`, until the next call with the same `which`. Up to the end of
+    /// the cell it has the same rows as the whole cell.
+    AccelerationCell part(const Run &run, const AccelerationCell &cell, double s, double end, Part which);
+
+    std::size_t size() const noexcept { return cells_.size(); }
+    const AccelerationCell &operator[](std::size_t k) const noexcept { return cells_[k]; }
+    /// End of the last cell.
+    double end_s() const noexcept { return cells_.empty() ? begin_s_ : cells_.back().end_s(); }
+
+    /// At the squared speed `b` at the start of the cell.
+    AccelerationRange range(const AccelerationCell &cell, double b) const noexcept;
+    /// Largest squared speed at the start of the cell from which `next` or less is reached at its end, at
+    /// most `most`.
+    double most_before(const AccelerationCell &cell, double most, double next) const noexcept;
+
+  private:
+    struct Row {
+        double c = 0, r = 0;
+    };
+    /// Between two points where the formula of the curve or of a limit changes.
+    struct Stretch {
+        double end_s = -1e300;
+        CurvePlace place;
+        CapRest rest;
+        double cell = 0;          ///< longest cell, for what rows may change in it
+        double acceleration = 0;  ///< along the path, in any direction
+        bool is_straight = false;
+        PointLimits end;  ///< at the end of the last cell
+    };
+    void begin_stretch(const Run &run, double end);
+    void add(const Run &run, double to);
+    static AccelerationCell make(double from, double to, const std::array<PointLimits, 2> &limits,
+                                 const std::array<double, 2> &at, bool is_straight, std::vector<Row> &rows);
+    bool isShort(const AccelerationCell &cell, const PointLimits &start, const PointLimits &end) const noexcept;
+    double next_point(const Run &run, const Span &span, double end) const noexcept;
+    const Row *rows_of(const AccelerationCell &cell) const noexcept {
+        return cell.row < IN_PART ? &rows_[cell.row - first_row_] : part_rows_[cell.row - IN_PART].data();
+    }
+
+    static constexpr std::size_t IN_PART = std::size_t{1} << 62;
+    double begin_s_ = 0;
+    Stretch stretch_;  ///< of the next cell
+    std::vector<AccelerationCell> cells_;
+    std::vector<Row> rows_;
+    std::array<std::vector<Row>, 3> part_rows_;
+    std::size_t first_row_ = 0;  ///< number of the first one in `rows_`
+};
+
+}  // namespace mw::trajectory::profile

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "trajectory/profile/acceleration_profile.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mw::trajectory::profile {
+
+namespace {
+
+/// Longest cell of time [s]: another plan or a stop begins at the start of one.
+constexpr double MOST_CELL_S = 2 * AccelerationCells::CELL_S;
+/// The same of the first one from standstill, in servo periods: a stop that is requested in the first period
+/// begins in the second.
+constexpr double FIRST_CELL = 1.2;
+/// Part of the squared speed by which a plan may exceed what a stop needs: rounding, and rows within a cell.
+constexpr double ROUNDING = 1e-6, WITHIN_CELL = 5e-3;
+
+double square(double x) noexcept {
+    return x * x;
+}
+
+double rounding_at(double s) noexcept {
+    return 1e-12 * std::max(1.0, std::abs(s));
+}
+
+}  // namespace
+
+void AccelerationProfile::begin(double s) noexcept {
+    start_s_ = end_s_ = s;
+    is_complete_ = had_stop_ = false;
+    time_cells_.clear();
+    cells_.begin(s);
+    joint_curve_.begin(nullptr, {});
+}
+
+void AccelerationProfile::take_limits(const Run &run) {
+    run_ = run;
+    run_.cap_reach = 0;
+    for (std::size_t k = 0; run.caps != nullptr && k < run.caps->size(); ++k) {
+        run_.cap_reach = std::max(run_.cap_reach, (*run.caps)[k].reach);
+    }
+    // A seam at the end of what is known may lower limits before it. At a stop there is none.
+    if (had_stop_ && run.end_s != run_end_s_) {
+        cells_.cut_behind(run_end_s_ - reach_);
+    }
+    const curve::CurvePoint end = curve::point_at((*run.spans)[span_at(*run.spans, run.end_s)], run.end_s);
+    reach_ = largest_reach(end, run.limits, period_s_);
+    run_end_s_ = run.end_s;
+    had_stop_ = run.has_stop;
+    drivable_end_s_ = run.has_stop ? run.end_s : run.end_s - reach_;
+    take_joints(run);
+    // What seams leave of limits is counted by the jerk of a full acceleration within one period.
+    const auto set_jerk = [&](Bounds &b) { b.jerk = b.acceleration / period_s_; };
+    for (std::size_t j = 0; j < joint_curve_.joints(); ++j) {
+        run_.joints.jerk[j] = run_.joints.acceleration[j] / period_s_;
+    }
+    std::for_each(run_.limits.axes.begin(), run_.limits.axes.end(), set_jerk);
+    set_jerk(run_.limits.xyz);
+}
+
+/// Computes the joints along what is known. Where there are none the run ends before.
+void AccelerationProfile::take_joints(const Run &run) {
+    if (run.map == nullptr || run.joints.count == 0) {
+        return;
+    }
+    if (joint_curve_.joints() == 0) {
+        joint_curve_.begin(run.map, run.joints);
+    }
+    joint_curve_.cover(*run.spans);
+    joint_curve_.drop_before(time_cells_.empty() ? start_s_ : time_cells_[0].c[0]);
+    run_.joint_curve = &joint_curve_;
+    if (joint_curve_.drivable_s() < drivable_end_s_) {
+        drivable_end_s_ = run_.end_s = joint_curve_.drivable_s();
+        run_.has_stop = true;
+    }
+}
+
+/// Squared speed limits of a cell. `feed`: that at the start of a cell before it.
+AccelerationProfile::Ends AccelerationProfile::limited_b(std::size_t &feed,
+                                                         const AccelerationCell &cell) const noexcept {
+    constexpr double INSIDE = 1e-9;
+    const auto &feeds = *run_.feeds;
+    while (feed + 1 < feeds.size() && feeds[feed].end_s < cell.s + INSIDE * cell.length) {
+        ++feed;
+    }
+    Ends out{cell.cap_b, cell.cap_b};
+    for (std::size_t k = feed;; ++k) {
+        const FeedLimit &f = feeds[k];
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const AccelerationCell::End &e = cell.ends[i];
+            const double length2 = f.along == FeedLimit::Along::XYZ   ? e.xyz2
+                                   : f.along == FeedLimit::Along::UVW ? e.uvw2
+                                                                      : 1.0;
+            out[i] = std::min({out[i], square(f.velocity) / std::max(length2, 1e-30),
+                               square(f.limit_share) * e.machine_b});
+            if (f.curve_share < 1 && !cell.is_straight) {
+                out[i] = std::min(out[i], square(f.curve_share) * e.curve_b);
+            }
+        }
+        if (k + 1 == feeds.size() || f.end_s >= cell.end_s() - INSIDE * cell.length) {
+            return out;
+        }
+    }
+}
+
+/// Lays cells as far as the motion of the window and a stop behind it may reach, and a stop that begins now:
+/// limits of the speed may have been lowered.
+void AccelerationProfile::lay(const State &from, double time_s) {
+    cells_.drop_before(from.s + rounding_at(from.s));
+    speed_.clear();
+    std::size_t feed = run_.feed_at(from.s);
+    double t = 0, b = from.b, stopping_b = from.b;
+    bool is_braking = false;
+    if (cells_.size() == 0) {
+        cells_.lay(run_, drivable_end_s_, b);
+    }
+    const bool is_inside = cells_.size() > 0 && cells_[0].end_s() >= drivable_end_s_;
+    if (is_inside && from.b <= 0 && !cells_[0].is_straight) {
+        cells_.divide(run_, from.s);
+    }
+    tail_at_ = 0;
+    for (std::size_t k = 0;; ++k) {
+        if (k == cells_.size()) {
+            cells_.lay(run_, drivable_end_s_, b);
+            if (k == cells_.size()) {
+                return;
+            }
+        }
+        if (k == 0) {
+            head_ = cells_.part(run_, cells_[0], from.s, drivable_end_s_, AccelerationCells::Part::HEAD);
+        }
+        if (k > 0 && cells_[k].end_s() > drivable_end_s_) {
+            tail_at_ = k;
+            tail_ = cells_.part(run_, cells_[k], cells_[k].s, drivable_end_s_, AccelerationCells::Part::TAIL);
+        }
+        const AccelerationCell &cell = cell_at(k);
+        speed_.push_back(limited_b(feed, cell));
+        b = std::min({b, speed_[k][0], cell.most_b});
+        double stop_s = 0;
+        stopping_b = stopping_b > 0 ? brake(cell, stopping_b, stop_s) : 0.0;
+        if (is_braking) {
+            b = brake(cell, b, stop_s);
+        } else {
+            // As fast as the limits allow, without braking for what follows.
+            const double a = cell.is_straight ? cell.least : cells_.range(cell, b).high;
+            const double next = std::clamp(b + 2 * a * cell.length, 0.0, speed_[k][1]);
+            t += 2 * cell.length / std::max(std::sqrt(b) + std::sqrt(next), 1e-12);
+            b = next;
+            is_braking = t > time_s;
+        }
+        if ((is_braking && !(b > 0) && !(stopping_b > 0)) || cell.end_s() >= drivable_end_s_) {
+            return;
+        }
+    }
+}
+
+/// The squared speed at the end of the cell of the soonest braking; 0 with `stop_s` where it ends in the cell.
+double AccelerationProfile::brake(const AccelerationCell &cell, double b, double &stop_s) const noexcept {
+    const double a = cell.is_straight ? -cell.least : cells_.range(cell, b).low;
+    const double next = b + 2 * a * cell.length;
+    if (next > 0) {
+        return next;
+    }
+    // What the end of the cell allows at standstill, too.
+    const double within = cell.is_straight ? -cell.least : std::max(a, -cell.least);
+    stop_s = std::min(cell.s - b / (2 * within), cell.end_s());
+    return 0;
+}
+
+/// The speed limits at the ends of the cells, and the most from which a stop is possible.
+void AccelerationProfile::pass_backward() {
+    const std::size_t n = speed_.size();
+    most_.assign(n + 1, 0.0);
+    for (std::size_t k = n; k-- > 0;) {
+        const AccelerationCell &cell = cell_at(k);
+        const double limit =
+            std::min(cell.most_b, k > 0 ? std::min(speed_[k][0], speed_[k - 1][1]) : speed_[k][0]);
+        const double most = std::max(limit, k < braked_.size() ? braked_[k] : 0.0);
+        most_[k] = cell.is_straight ? std::min(most, most_[k + 1] + 2 * cell.least * cell.length)
+                                    : cells_.most_before(cell, most, most_[k + 1]);
+    }
+}
+
+/// The motion may be above a lowered limit as long as the soonest braking needs.
+void AccelerationProfile::allow_braking(const State &from) {
+    braked_.assign(1, from.b * (1 + ROUNDING));
+    double b = from.b;
+    for (std::size_t k = 0; k < speed_.size() && b > 0; ++k) {
+        double stop_s = 0;
+        b = brake(cell_at(k), b, stop_s);
+        braked_.push_back(b * (1 + ROUNDING));
+    }
+}
+
+/// Adds cells of time with one acceleration: from a point to the squared speed `b` after `length`.
+void AccelerationProfile::add(std::vector<TimeCell> &out, const State &from, double b, double length) const {
+    const double v = std::sqrt(from.b), next = std::sqrt(std::max(b, 0.0));
+    if (!(length > 0) || !(v + next > 0)) {
+        return;
+    }
+    constexpr double LEAST_CELL_S = 1e-12;
+    const double time = 2 * length / (v + next), a = (next - v) / time;
+    if (time < LEAST_CELL_S) {
+        return;
+    }
+    const auto push = [&](double t, double duration) {
+        out.push_back({duration, {from.s + t * (v + 0.5 * a * t), v + a * t, 0.5 * a, 0, 0, 0}});
+    };
+    const double start = FIRST_CELL * period_s_, first = v > 0 || time < 2 * start ? 0.0 : start;
+    if (first > 0) {
+        push(0, first);
+    }
+    const int parts = static_cast<int>(std::max(std::ceil((time - first) / MOST_CELL_S), 1.0));
+    const double part = (time - first) / parts;
+    for (int i = 0; i < parts; ++i) {
+        push(first + part * i, part);
+    }
+}
+
+void AccelerationProfile::drive_straight(const AccelerationCell &cell, std::size_t k, State &from) {
+    const double a2 = 2 * cell.least, length = cell.length, b = from.b;
+    const double end = std::min(most_[k + 1], b + a2 * length);
+    // The speed between: the limit, or what is reached with full acceleration.
+    const double limit = std::min(speed_[k][0], speed_[k][1]);
+    const double top = b > limit ? std::max(limit, std::min(end, b)) : std::min(limit, 0.5 * (b + end + a2 * length));
+    const double first = std::min(std::abs(top - b) / a2, length);
+    const double last = std::min(std::abs(top - end) / a2, length - first);
+    add(time_cells_, from, top, first);
+    add(time_cells_, {cell.s + first, top}, top, length - first - last);
+    add(time_cells_, {cell.end_s() - last, top}, end, last);
+    from = {cell.end_s(), end};
+}
+
+void AccelerationProfile::drive(const AccelerationCell &cell, std::size_t k, State &from) {
+    if (cell.is_straight) {
+        drive_straight(cell, k, from);
+        return;
+    }
+    const double end = std::clamp(from.b + 2 * cell.length * cells_.range(cell, from.b).high, 0.0, most_[k + 1]);
+    add(time_cells_, from, end, cell.length);
+    from = {cell.end_s(), end};
+}
+
+/// Returns the time of the motion up to the end of the cells, or of the window.
+double AccelerationProfile::pass_forward(State from) {
+    const double to = run_.has_stop ? run_.end_s : 1e300;
+    double t = 0;
+    for (std::size_t k = 0; k < speed_.size() && t < window_s_; ++k) {
+        const std::size_t old = time_cells_.size();
+        const AccelerationCell cell = cell_at(k);
+        drive(cell, k, from);
+        for (std::size_t i = old; i < time_cells_.size(); ++i) {
+            t += time_cells_[i].duration;
+        }
+        if (time_cells_.size() == old) {
+            break;  // no speed
+        }
+    }
+    end_s_ = from.s;
+    is_complete_ = from.b <= 0 && from.s >= to - rounding_at(to);
+    return t;
+}
+
+bool AccelerationProfile::plan(const Run &run, std::size_t fixed) {
+    constexpr double FARTHER = 1.5;
+    if (fixed >= time_cells_.size() && !time_cells_.empty()) {
+        return true;
+    }
+    const State from = state_at(fixed);
+    take_limits(run);
+    if (!(drivable_end_s_ > from.s)) {
+        return true;
+    }
+    for (double time_s = window_s_;; time_s *= FARTHER) {
+        lay(from, time_s);
+        braked_.clear();
+        pass_backward();
+        if (from.b > most_[0] * (1 + ROUNDING)) {
+            allow_braking(from);
+            pass_backward();
+        }
+        if (from.b > most_[0] * (1 + WITHIN_CELL)) {
+            return is_complete_ && end_s_ <= drivable_end_s_ ? true : stop_soon(from, fixed);
+        }
+        time_cells_.resize(fixed);
+        const bool is_all = cell_at(speed_.size() - 1).end_s() >= drivable_end_s_;
+        if (pass_forward(from) >= window_s_ || is_all) {
+            return true;
+        }
+    }
+}
+
+/// The end is nearer than the plan may stop: it ends in the soonest stop. False if that is behind the end.
+bool AccelerationProfile::stop_soon(const State &from, std::size_t fixed) {
+    const Stop stop = stop_from(from);
+    if (stop.cells.empty() || stop.end_s > drivable_end_s_) {
+        return false;
+    }
+    time_cells_.resize(fixed);
+    time_cells_.insert(time_cells_.end(), stop.cells.begin(), stop.cells.end());
+    end_s_ = stop.end_s;
+    is_complete_ = true;
+    return true;
+}
+
+Stop AccelerationProfile::stop_from(const State &start) {
+    Stop out;
+    State from = start;
+    std::size_t k = 0;
+    while (k + 1 < speed_.size() && cell_at(k).end_s() <= from.s) {
+        ++k;
+    }
+    AccelerationCell cell = cell_at(k);
+    if (from.s > cell.s) {
+        cell = cells_.part(run_, cell, from.s, cell.end_s(), AccelerationCells::Part::STOP);
+    }
+    while (true) {
+        double stop_s = cell.end_s();
+        const double b = brake(cell, from.b, stop_s);
+        add(out.cells, from, b, (b > 0 ? cell.end_s() : stop_s) - from.s);
+        from = {b > 0 ? cell.end_s() : stop_s, b};
+        if (!(b > 0)) {
+            break;
+        }
+        if (++k == speed_.size()) {
+            return {};  // not on what is known
+        }
+        cell = cell_at(k);
+    }
+    out.end_s = from.s;
+    return out;
+}
+
+/// The motion at the start of a cell of time, or at the end of the last one.
+AccelerationProfile::State AccelerationProfile::state_at(std::size_t cell) const noexcept {
+    if (time_cells_.empty()) {
+        return {start_s_, 0};
+    }
+    if (cell < time_cells_.size()) {
+        return {time_cells_[cell].c[0], square(time_cells_[cell].c[1])};
+    }
+    const TimeCell &last = time_cells_.back();
+    return {end_s_, is_complete_ ? 0.0 : square(last.v_at(last.duration))};
+}
+
+Stop AccelerationProfile::next_stop(const Run &, std::size_t fixed, StopEffort) {
+    const State from = state_at(fixed);
+    if (!(from.b > 0) || speed_.empty()) {
+        return {std::min(fixed, cells()), {}, from.s};
+    }
+    Stop stop = stop_from(from);
+    stop.kept = std::min(fixed, cells());
+    return stop.cells.empty() ? Stop{cells(), {}, end_s()} : stop;
+}
+
+void AccelerationProfile::drop(std::size_t count) {
+    time_cells_.erase(time_cells_.begin(), time_cells_.begin() + static_cast<long>(count));
+}
+
+}  // namespace mw::trajectory::profile

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The shortest time along a curve within velocity and acceleration.
+//
+// Backward over the known curve: the largest squared speed at each cell from which a stop at the end of what
+// is known keeps every limit. Forward: the largest acceleration that leads to such a speed. Where more of the
+// curve is known these speeds only grow, so a plan always continues the one before.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "trajectory/profile/acceleration_cells.hh"
+#include "trajectory/profile/path_timing.hh"
+
+namespace mw::trajectory::profile {
+
+/// Planner thread.
+class AccelerationProfile final : public PathTiming {
+  public:
+    /// `window_s`: planned at once. `period_s`: of the servo thread.
+    AccelerationProfile(double window_s, double period_s) : window_s_(window_s), period_s_(period_s) {}
+
+    void begin(double s) noexcept override;
+    bool plan(const Run &run, std::size_t fixed) override;
+    bool replan(const Run &run, std::size_t fixed) override { return plan(run, fixed); }
+    void begin_stops(const Run &) override {}
+    Stop next_stop(const Run &run, std::size_t fixed, StopEffort effort) override;
+    double stops_apart_s(double stop_s) const noexcept override {
+        return std::max(1.8 * AccelerationCells::CELL_S, 0.06 * stop_s);
+    }
+    std::size_t cells() const noexcept override { return time_cells_.size(); }
+    const TimeCell &cell(std::size_t k) const noexcept override { return time_cells_[k]; }
+    bool isComplete() const noexcept override { return is_complete_; }
+    double end_s() const noexcept override { return end_s_; }
+    void drop(std::size_t count) override;
+    double drivable_s() const noexcept override { return joint_curve_.drivable_s(); }
+
+  private:
+    /// A point of the motion.
+    struct State {
+        double s = 0, b = 0;
+    };
+    void take_limits(const Run &run);
+    void take_joints(const Run &run);
+    void lay(const State &from, double time_s);
+    /// Squared speeds at the ends of a cell.
+    using Ends = std::array<double, 2>;
+    Ends limited_b(std::size_t &feed, const AccelerationCell &cell) const noexcept;
+    void pass_backward();
+    void allow_braking(const State &from);
+    double brake(const AccelerationCell &cell, double b, double &stop_s) const noexcept;
+    double pass_forward(State from);
+    void drive(const AccelerationCell &cell, std::size_t k, State &from);
+    void drive_straight(const AccelerationCell &cell, std::size_t k, State &from);
+    void add(std::vector<TimeCell> &out, const State &from, double b, double length) const;
+    Stop stop_from(const State &from);
+    bool stop_soon(const State &from, std::size_t fixed);
+    State state_at(std::size_t cell) const noexcept;
+    const AccelerationCell &cell_at(std::size_t k) const noexcept {
+        return k == 0 ? head_ : k == tail_at_ ? tail_ : cells_[k];
+    }
+
+    double window_s_, period_s_;
+    Run run_;
+    curve::JointCurve joint_curve_;
+    AccelerationCells cells_;
+    AccelerationCell head_, tail_;  ///< what is left of the first cell; the cell in which the run ends
+    std::size_t tail_at_ = 0;       ///< 0: none
+    std::vector<Ends> speed_;     ///< squared speed limits
+    std::vector<double> most_;    ///< squared speeds from which a stop is possible
+    std::vector<double> braked_;        ///< squared speed of the soonest braking at the ends
+    double start_s_ = 0, drivable_end_s_ = 0;
+    std::vector<TimeCell> time_cells_;
+    double end_s_ = 0;
+    bool is_complete_ = false;
+    /// Of the last run: its end, the distance before it within which a seam may lower limits.
+    bool had_stop_ = false;
+    double run_end_s_ = 0, reach_ = 0;
+};
+
+}  // namespace mw::trajectory::profile
