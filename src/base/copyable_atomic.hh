@@ -6,7 +6,7 @@
 
 namespace mw {
 
-/// As std::atomic. A copy takes only the value and gives no ordering with other writes.
+/// As std::atomic. A copy copies the value and does not order it with other writes.
 template <class T>
 class CopyableAtomic : public std::atomic<T> {
   public:

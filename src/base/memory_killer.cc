@@ -68,7 +68,7 @@ int lower_oom_score(int wanted) {
         static_cast<void>(::prctl(PR_SET_DUMPABLE, 0));
     }
     if (::geteuid() != 0) {
-        give_up_capability(CAP_SYS_RESOURCE);  // it would also lift limits of memory and disks
+        give_up_capability(CAP_SYS_RESOURCE);  // the capability would also override memory and disk limits
     }
     return score;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which process the kernel ends first when memory is exhausted: the one with the highest sum of its size (per
-// mille of the computer's memory) and its oom_score_adj (-1000 to 1000, inherited). The realtime process is
-// last, then task and HAL programs, then programs of operators, and screens are first.
+// Order in which the kernel ends processes when memory is exhausted. It ends the process with the highest sum
+// of its size (per mille of the computer's memory) and its oom_score_adj (-1000 to 1000, inherited). Screens
+// are ended first, then programs of operators, then task and HAL programs, and the realtime process last.
 #pragma once
 
 #include <sys/types.h>
@@ -13,7 +13,7 @@ constexpr int PROGRAM_OOM_STEP = 200;  ///< displays and user M codes above task
 constexpr int SCREENS_OOM_STEP = 500;  ///< servers of screens above the process that starts them
 
 /// Adds `step` to the OOM score of `process` (0: this process). Any user may do that for their own processes.
-/// False: unchanged.
+/// Returns false if the score was not changed.
 bool raise_oom_score(int step, pid_t process = 0);
 
 /// Sets the OOM score of this process to `wanted`, or to the lowest higher value that the kernel permits. A

@@ -15,13 +15,13 @@ class OutputRelay {
     /// Call once in a process. If a pipe or thread cannot be created, output is not redirected and the reason
     /// is returned.
     static std::string begin();
-    /// Why output was lost since the last call, as "the output of this program is lost: No space left on
-    /// device"; empty: nothing was lost.
+    /// The reason why output was lost since the last call, as "the output of this program is lost: No space
+    /// left on device". Empty if nothing was lost.
     static std::string take_loss();
     /// Waits at most 0.5 s for pending output. Afterwards both descriptors are as before begin(), or discard
     /// output if they could not be written.
     static void end();
-    /// True if the output of `descriptor` (1 or 2) goes to a terminal.
+    /// True if the output of `descriptor` (1 or 2) is a terminal.
     static bool isTerminal(int descriptor);
     /// Call in a forked child before exec: a program with a person at its terminal gets the terminal itself.
     /// Async-signal-safe; no effect before begin().

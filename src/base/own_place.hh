@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The folder of this program, and files relative to it.
+// Finds the folder of this program, and files relative to it.
 #pragma once
 
 #include <string>

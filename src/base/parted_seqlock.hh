@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A snapshot in parts: the writer stores only changed parts, and each reader copies only the parts that
-// changed since its last read. Otherwise as base/seqlock.hh.
+// changed since its last read. In other respects it works as base/seqlock.hh.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using PartStarts = std::array<std::size_t, N>;
 /// Bit per part.
 using PartMask = std::uint64_t;
 
-/// The mask of `count` parts from `first` on.
+/// The mask of `count` parts, beginning with `first`.
 constexpr PartMask part_range(int first, int count) noexcept {
     return (count < 64 ? (PartMask{1} << count) - 1 : ~PartMask{0}) << first;
 }
@@ -46,7 +46,7 @@ class PartedSeqlock {
     struct Copy {
         T value{};
         std::uint64_t sequence = 0;  ///< sequence number of the copied write
-        PartMask fresh = 0;          ///< parts that the last read copied
+        PartMask fresh = 0;          ///< parts copied by the last read
     };
 
     /// The parts of `parts` that differ from the last write. [writer thread]
@@ -82,9 +82,9 @@ class PartedSeqlock {
         sequence_.store(before + 2, std::memory_order_release);
     }
 
-    /// Updates `copy`, with at most `tries` attempts; before the first write it is not changed. False when
-    /// the writer died during a write: `copy.value` may be inconsistent then, until the next successful read.
-    /// [any thread]
+    /// Updates `copy`, with at most `tries` attempts; before the first write `copy` is not changed. False
+    /// when the writer died during a write: `copy.value` may be inconsistent then, until the next successful
+    /// read. [any thread]
     bool read(Copy &copy, int tries = 1000000) const noexcept {
         for (int i = 0; i < tries; ++i) {
             const std::uint64_t before = sequence_.load(std::memory_order_acquire);
@@ -156,8 +156,8 @@ class PartedSeqlock {
         return part + 1 < COUNT ? STARTS[part + 1] : sizeof(T);
     }
 
-    /// Copies the parts written after `copy`. A part that a failed attempt has copied has a later version
-    /// than `copy`, so the next attempt copies it again.
+    /// Copies the parts that were written after `copy` was read. A failed attempt leaves the version of
+    /// `copy` unchanged, so the next attempt copies the same parts again.
     PartMask copy_parts(Copy &copy, std::uint64_t sequence) const noexcept {
         if (sequence == copy.sequence) {
             return 0;

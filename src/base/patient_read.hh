@@ -7,9 +7,9 @@
 
 namespace mw {
 
-/// Reads `value` from `lock`. Sleeps so that a writer that was preempted during its write gets the processor,
-/// which may be this core. False when the write does not end within `patience`, or at once when `isAlive()`
-/// is false. Not for realtime threads.
+/// Reads `value` from `lock`. Sleeps between attempts, so that a writer that was preempted on this core can
+/// complete its write. False when the write does not end within `patience`, or at once when `isAlive()` is
+/// false. Not for realtime threads.
 template <class Lock, class Value, class IsAlive>
 bool read_patiently(const Lock &lock, Value &value, std::chrono::milliseconds patience,
                     const IsAlive &isAlive) {
@@ -21,7 +21,8 @@ bool read_patiently(const Lock &lock, Value &value, std::chrono::milliseconds pa
     const auto end = Clock::now() + patience;
     while (Clock::now() < end) {
         std::this_thread::sleep_for(std::chrono::microseconds(50));
-        const bool writer_alive = isAlive();  // checked before the read, so its last write is seen
+        // checked before the read, so that the read includes the writer's last write
+        const bool writer_alive = isAlive();
         if (lock.read(value, TRIES)) {
             return true;
         }

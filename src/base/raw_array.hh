@@ -8,8 +8,8 @@
 
 namespace mw {
 
-/// As std::array, but not initialised: megabytes of which a run uses little cost neither time nor memory. May
-/// be copied as a whole at any time. Holds no pointers, so it may live in shared memory. An element must be
+/// As std::array, but not initialised, so unused elements cost neither time nor physical memory. May be
+/// copied as a whole at any time. Holds no pointers, so it may live in shared memory. An element must be
 /// written before it is read.
 template <class T, std::size_t N>
 class RawArray {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Errors of code outside realtime: a value with the position of the error, never an exception.
+// Errors of code outside realtime threads. An error is a returned value with its position, never an
+// exception.
 #pragma once
 
 #include <expected>
@@ -23,7 +24,7 @@ struct Error {
     std::string message;
     SourcePlace place{};
     std::string hint{};
-    /// Already reported to a person in full; not reported again.
+    /// True if the error was reported to a person in full, so that it is not reported again.
     bool isTold = false;
 
     /// "file:line:column: message (hint)".

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One writer publishes a snapshot, any number of readers in any process take whole copies of it.
-// Source: H. Boehm, "Can seqlocks get along with programming language memory models?", MSPC 2012.
+// One writer publishes a snapshot. Any number of readers in any process read consistent copies of it. Source:
+// H. Boehm, "Can seqlocks get along with programming language memory models?", MSPC 2012.
 #pragma once
 
 #include <array>
@@ -43,10 +43,10 @@ class Seqlock {
         sequence_.store(seq + 2, std::memory_order_release);
     }
 
-    /// Changes with each write: data read at the same number is current. [any thread]
+    /// Changes with each write. Data that was read at the current version is up to date. [any thread]
     std::uint32_t version() const noexcept { return sequence_.load(std::memory_order_acquire); }
 
-    /// Tries once; false during a write. [any thread]
+    /// Tries to read once. Returns false during a write. [any thread]
     bool try_read(T &value) const noexcept {
         const std::uint32_t before = sequence_.load(std::memory_order_acquire);
         if ((before & 1U) != 0) {

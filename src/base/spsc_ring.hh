@@ -19,7 +19,7 @@ class SpscRing {
     static_assert(N > 0 && (N & (N - 1)) == 0, "size must be a power of two");
 
   public:
-    /// Appends; false when full. [producer]
+    /// Appends the element; false when full. [producer]
     bool push(const T &value) noexcept {
         const std::uint32_t head = head_.load(std::memory_order_relaxed);
         // Acquire: pairs with pop's release; the slot has been read before we overwrite it.
@@ -32,7 +32,7 @@ class SpscRing {
         return true;
     }
 
-    /// Takes the oldest; false when empty. [consumer]
+    /// Removes the oldest element and returns it in `value`; false when empty. [consumer]
     bool pop(T &value) noexcept {
         const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
         // Acquire: pairs with push's release.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A vector in place, for realtime code: bounded, never allocates, trivially copyable when T is.
+// A vector with storage inside the object, for realtime code: bounded, never allocates, trivially copyable
+// when T is.
 #pragma once
 
 #include <array>
@@ -10,7 +11,7 @@ namespace mw {
 template <class T, std::size_t N>
 class StaticVector {
   public:
-    /// Appends; false (and no change) when full.
+    /// Appends the value; false (and no change) when full.
     constexpr bool push_back(const T &value) noexcept {
         if (size_ == N) {
             return false;

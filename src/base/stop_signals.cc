@@ -23,7 +23,8 @@ void catch_stop_signals() {
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         ::sigaction(number, &action, nullptr);
     }
-    // Programs that are started later have the default action again; an ignored signal would stay ignored.
+    // A handler is reset to the default action in programs started later; an ignored signal would remain
+    // ignored there.
     struct sigaction survive{};
     survive.sa_handler = [](int) {};
     survive.sa_flags = SA_RESTART;

@@ -131,7 +131,8 @@ bool TemporaryFile::make(const std::string &prefix) {
         if (fd_ < 0) {
             continue;
         }
-        // Another process may have taken it for abandoned before it was locked. Without locks none does.
+        // Another process may have treated the file as abandoned before it was locked. This cannot happen on
+        // a file system without locks.
         const bool taken = ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
         if (!taken && isSame(folder_, name.c_str(), fd_)) {
             name_ = std::move(name);

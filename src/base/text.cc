@@ -175,9 +175,9 @@ std::string to_text(double value) {
 }
 
 std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value) {
-    // The nearest whole number to value * 10,000 is right unless a tie is near. The rounding of the product
-    // is less than NEAR_TIE, or (from 2^44 on, where doubles are further apart and may be a tie) less than
-    // their distance from the tie.
+    // The nearest whole number to value * 10,000 is correct unless the value is near a tie. The rounding of
+    // the product is less than NEAR_TIE, or (from 2^44 on, where doubles are further apart and may be a tie)
+    // less than their distance from the tie.
     constexpr double SCALE = 1e4, LARGEST = 1e14, NEAR_TIE = 1e-3;
     const double scaled = std::fabs(value) * SCALE;
     const bool small = scaled < LARGEST;  // false for NaN
@@ -189,7 +189,8 @@ std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value) {
         return static_cast<std::size_t>(made.ptr - begin);
     }
     constexpr std::uint64_t DECIMALS = 10000;
-    constexpr std::size_t MOST = 24;  // sign, eleven digits, point and four digits are 17
+    // the longest number has 17 characters: sign, eleven digits, point and four digits
+    constexpr std::size_t MOST = 24;
     const std::uint64_t digits = static_cast<std::uint64_t>(whole) + (rest > 0.5 ? 1 : 0);
     char
         buffer[2 * MOST];  // twice, so that MOST characters can be copied from any position in the first half
@@ -298,7 +299,7 @@ std::vector<std::string> split_words(std::string_view text) {
 std::string nearest_name(std::string_view name, const std::vector<std::string> &candidates) {
     std::size_t best = name.size() / 3 + 1;
     std::string found;
-    // A longer or abbreviated name is nearer than one with other letters.
+    // A longer or abbreviated name is a better match than a name with other letters.
     constexpr std::size_t LEAST_PREFIX = 6;
     for (const std::string &candidate : candidates) {
         const std::size_t common = std::min(name.size(), candidate.size());

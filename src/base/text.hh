@@ -30,7 +30,7 @@ std::optional<std::uint64_t> parse_c_uint(std::string_view text);
 /// Shortest text that reads back as the same double.
 std::string to_text(double value);
 
-/// Size for any number that write_fixed4() writes: the largest double has 309 digits before the point.
+/// Sufficient for any number that write_fixed4() writes: the largest double has 309 digits before the point.
 inline constexpr std::size_t FIXED4_SIZE = 320;
 /// Writes `value` as printf's "%.4f" does in the C locale, without a terminating zero. @return its length
 std::size_t write_fixed4(std::span<char, FIXED4_SIZE> out, double value);

@@ -5,7 +5,8 @@
 namespace mw {
 
 /// Raises the thread above those of ordinary programs, if this process may: by SCHED_RR with the lowest
-/// priority, far below the servo thread, else by a nice value. Threads that it starts have normal priority.
+/// priority, far below the servo thread, else by a nice value. Threads started by this thread have normal
+/// priority.
 /// @param thread_id as gettid() returns it; 0 is the calling thread
 void raise_priority(int thread_id = 0) noexcept;
 /// Sets normal priority.

@@ -8,8 +8,8 @@ namespace mw::runtime {
 
 enum class Activity : std::uint8_t {
     RUNNING,
-    STOPPED,  ///< by a signal (SIGSTOP, Ctrl-Z) or a debugger
-    ENDED,    ///< or a zombie
+    STOPPED,  ///< stopped by a signal (SIGSTOP, Ctrl-Z) or a debugger
+    ENDED,    ///< ended, or a zombie
 };
 Activity activity_of(const ProcessId &process);
 

@@ -40,7 +40,7 @@ struct Spec {
     bool is_long_double = false;
 };
 
-/// va_list may be an array type; inside a struct it passes by reference everywhere.
+/// va_list may be an array type; inside a struct it is passed by reference on all platforms.
 struct Args {
     std::va_list list;
 };

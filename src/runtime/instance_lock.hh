@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Ensures one machine of a name on this computer, for all users.
+// Ensures that only one machine with a given name runs on this computer, for all users.
 #pragma once
 
 #include <string>

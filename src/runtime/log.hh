@@ -18,7 +18,7 @@ class Log {
     static constexpr std::size_t TEXT_SIZE = 1004;
     static constexpr std::size_t RECORDS = 1024;
 
-    /// Receives a line; `text` is zero-terminated and has no newline at its end.
+    /// Receives a line. `text` is zero-terminated and does not end with a newline.
     using Sink = void (*)(void *context, LogLevel level, const char *text);
 
     /// SYNCHRONOUS prints within the call (virtual clock, tools); DRAINED prints in a separate thread
@@ -45,7 +45,7 @@ class Log {
 
     /// Prints the waiting records in this thread. [not realtime]
     void drain();
-    /// Messages lost because the ring was full.
+    /// Number of messages lost because the ring was full.
     std::uint64_t lost() const noexcept;
     /// Replaces the sink; returns the previous one in `sink` and `context`. [not realtime]
     void swap_sink(Sink &sink, void *&context);

@@ -21,7 +21,7 @@ ProcessId this_process();
 bool isAlive(const ProcessId &process);
 
 /// The folder of this user's sockets and locks, mode 0700: $XDG_RUNTIME_DIR/millwright or
-/// /tmp/millwright-UID. An error when it belongs to another user or others may enter it.
+/// /tmp/millwright-UID. It is an error if the folder belongs to another user or other users may enter it.
 Result<std::string> runtime_folder();
 
 }  // namespace mw::runtime

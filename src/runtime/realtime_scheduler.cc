@@ -49,7 +49,7 @@ __attribute__((noinline)) void touch_stack() noexcept {
     for (std::size_t i = 0; i < STACK_TOUCHED; i += 4096) {
         pages[i] = 0;
     }
-    // The compiler must take the array for used.
+    // Prevents the compiler from removing the array.
     __asm__ volatile("" : : "r"(pages) : "memory");
 }
 
@@ -97,7 +97,8 @@ void *try_realtime(void *result) {
     return nullptr;
 }
 
-/// Tries in a temporary thread.
+/// Requests realtime priority in a temporary thread, so that the caller keeps its priority. @return errno, or
+/// 0
 int realtime_error() {
     int error = EAGAIN;
     pthread_t thread{};
@@ -225,7 +226,7 @@ Result<> RealtimeScheduler::Impl::start(Task &task) {
     return {};
 }
 
-/// Rate-monotonic: of two threads the one with the shorter period has the higher priority.
+/// Rate-monotonic priorities: the thread with the shorter period has the higher priority.
 void RealtimeScheduler::Impl::set_priorities() {
     if (!missing.empty()) {
         return;
@@ -264,7 +265,7 @@ RealtimeScheduler::RealtimeScheduler(Log &log, const RealtimeOptions &options)
         return;
     }
     const int error = realtime_error();
-    // Reports both at once, so that one correction does not reveal the next error at the next start.
+    // Reports both obstacles at once, so that the user need not start twice to find them.
     const std::string obstacle = lock_obstacle();
     if (error != 0) {
         impl_->missing = "a limit 'rtprio' of at least " + std::to_string(PRIORITY_FASTEST) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The clock that sleeps to absolute deadlines, one system thread per periodic.
+// A scheduler in real time: each periodic has a thread that sleeps to absolute deadlines.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ struct RealtimeOptions {
 
 /// Threads of Order::THREAD have SCHED_FIFO priorities, shorter periods higher; PLANNER lies below them; TASK
 /// and UI are ordinary threads. A thread that is late skips the releases it missed and counts them; it never
-/// catches up. Without the privilege all are ordinary threads, and the log says once which capability or
-/// limit is missing.
+/// catches up. Without the privilege all threads are ordinary threads, and the log reports once which
+/// capability or limit is missing.
 class RealtimeScheduler final : public Scheduler {
   public:
     explicit RealtimeScheduler(Log &log, const RealtimeOptions &options = {});
@@ -37,7 +37,7 @@ class RealtimeScheduler final : public Scheduler {
 
     /// False in simulation mode.
     bool isRealtime() const noexcept override;
-    /// Why the scheduler is not realtime; empty when it is.
+    /// The reason why the scheduler is not realtime; empty when it is realtime.
     const std::string &missing() const noexcept;
 
     std::int64_t current_release_ns() const noexcept override;

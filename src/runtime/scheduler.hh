@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Periodic work under a clock: one interface with a realtime and a virtual implementation.
+// Schedules periodic work. The interface has a realtime and a virtual implementation.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace mw::runtime {
 
 /// Order of periodics that are due at the same virtual time. Among threads: shorter period first, then
-/// creation order. Under the realtime clock it is the order of priorities (threads realtime, the others
-/// below).
+/// creation order. Under the realtime clock it is the order of priorities; only THREAD and PLANNER have
+/// realtime priority.
 enum class Order : std::uint8_t { THREAD, PLANNER, TASK, UI };
 
 using PeriodicId = StrongId<struct PeriodicTag>;
@@ -43,16 +43,17 @@ class Scheduler {
     virtual bool isVirtual() const noexcept = 0;
     /// True when threads run with realtime priority and locked memory.
     virtual bool isRealtime() const noexcept { return false; }
-    /// Calls `spec.function` in every period, from the next multiple on. [not realtime]
+    /// Calls `spec.function` in every period, beginning with the next multiple of the period. [not realtime]
     virtual Result<PeriodicId> add(const PeriodicSpec &spec) = 0;
-    /// After it returns the function does not run and is not called again. [not realtime]
+    /// After the call returns, the function of this periodic does not run and is not called again. [not
+    /// realtime]
     virtual void remove(PeriodicId id) = 0;
     virtual PeriodicStats stats(PeriodicId id) const = 0;
     /// Release time of the current period of the calling periodic; 0 in other threads and under the virtual
     /// clock. [any thread, realtime-safe]
     virtual std::int64_t current_release_ns() const noexcept { return 0; }
-    /// Shifts the next releases of the calling periodic by `ns` per period, at most one percent of it, until
-    /// it is set again. False in other threads and under the virtual clock. [realtime-safe]
+    /// Shifts each release of the calling periodic by a further `ns`, at most one percent of the period,
+    /// until the next call. False in other threads and under the virtual clock. [realtime-safe]
     virtual bool set_correction_ns(std::int64_t /*ns*/) noexcept { return false; }
 };
 

@@ -18,8 +18,8 @@ struct SharedLayout {
     std::uint64_t layout_hash = 0;  ///< hash of sizes and offsets of the structs inside
 };
 
-/// A mapping with an address range of `reserve` bytes, of which size() exist. Growing does not move it in any
-/// process. [not realtime]
+/// A mapping with an address range of `reserve` bytes, of which the first size() bytes exist. Growing does
+/// not move the mapping in any process. [not realtime]
 class SharedMemory {
   public:
     SharedMemory() = default;
@@ -27,11 +27,11 @@ class SharedMemory {
     SharedMemory(SharedMemory &&other) noexcept;
     SharedMemory &operator=(SharedMemory &&other) noexcept;
 
-    /// Creates /dev/shm/NAME for this user, zeroed. A segment of a dead owner is replaced; one of a living
-    /// owner is an error. The creator owns it: the destructor removes the name.
+    /// Creates /dev/shm/NAME for this user, zeroed. Replaces a segment of an ended process. A segment of a
+    /// running process is an error. The creator owns the segment, and its destructor removes the name.
     static Result<SharedMemory> create(const std::string &name, std::size_t size, std::size_t reserve,
                                        const SharedLayout &layout);
-    /// Opens a segment that another process created; an error names the difference.
+    /// Opens a segment that another process created. An error states which property differs.
     static Result<SharedMemory> attach(const std::string &name, const SharedLayout &layout);
     /// Creates a segment without a name, for this process alone.
     static Result<SharedMemory> create_private(std::size_t size, std::size_t reserve,
@@ -47,10 +47,11 @@ class SharedMemory {
     bool contains(const void *pointer) const noexcept;
     /// Removes the name, in the process that created it. The content remains until the object is destroyed.
     void remove() noexcept;
-    /// The process that created it.
+    /// The process that created the segment.
     ProcessId owner() const noexcept;
 
-    /// Removes segments of dead owners of this user whose name begins with `prefix`; returns their number.
+    /// Removes this user's segments whose name begins with `prefix` and whose owner has ended; returns their
+    /// number.
     static int remove_stale(const std::string &prefix);
 
   private:

@@ -16,8 +16,8 @@ class Canvas {
     /// An empty white picture [pixels] for the file `path`: .png or .svg. Any other extension is an error.
     static Result<Canvas> open(const std::string &path, double width, double height);
 
-    /// Checks what open() and write() would reject: another extension, a folder that does not exist or is not
-    /// writable.
+    /// Reports the errors that open() and write() would report: another extension, a folder that does not
+    /// exist or is not writable.
     static Result<> check(const std::string &path);
 
     cairo_t *cairo() const noexcept { return context_.get(); }

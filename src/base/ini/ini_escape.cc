@@ -208,7 +208,8 @@ std::string encode_ini_value(std::string_view value) {
         const char c = value[i];
         const auto at = NAMED.find(c);
         const bool is_end = i == 0 || i + 1 == value.size();
-        const bool is_continuation = c == '\\' && i + 1 == value.size();  // it would be one
+        // the backslash would continue the value on the next line
+        const bool is_continuation = c == '\\' && i + 1 == value.size();
         if (at != NAMED.npos && !is_continuation) {
             out += {'\\', LETTERS[at]};
         } else if ((c == ' ' && is_end) || (c >= 0 && c < ' ') || c == '\x7f' || is_continuation) {

@@ -193,7 +193,7 @@ class IniParser {
         const std::string_view key = equals == std::string_view::npos ? "" : trim(body.substr(0, equals));
         const bool is_one_word = equals == std::string_view::npos && body.find_first_of(" \t") == body.npos;
         if (is_one_word) {
-            // A setting needs a value, so the warning loses nothing.
+            // A line without a value sets nothing, so a warning is enough.
             sink_.warning("'" + std::string(body) + "' is no setting; the line has no effect", place,
                           "expected KEY = VALUE, [SECTION], or a comment that starts with # or ;");
             return;
@@ -263,9 +263,9 @@ class IniParser {
     IniFile &file_;
     diagnostics::Sink &sink_;
     bool strict_;
-    std::size_t told_;  ///< messages of earlier files
+    std::size_t told_;  ///< number of messages of earlier files
     bool stopped_ = false;
-    std::vector<std::string> open_{};  ///< the file being read; before it the files that include it
+    std::vector<std::string> open_{};  ///< the file being read, preceded by the files that include it
     std::string section_;
     bool in_bad_section_ = false;
 };

@@ -13,9 +13,9 @@ namespace mw::ini {
 enum class IniKind : std::uint8_t { TEXT, LIST, NUMBER, WHOLE, FLAG, CHOICE };
 
 enum class IniEffect : std::uint8_t {
-    EFFECTIVE,  ///< this version uses it
-    ELSEWHERE,  ///< HAL files, displays or other programs read it
-    NONE,       ///< known from LinuxCNC, without effect here: reported where it is set
+    EFFECTIVE,  ///< used by this version
+    ELSEWHERE,  ///< read by HAL files, displays or other programs
+    NONE,       ///< a LinuxCNC key without effect here; each setting of it is reported
 };
 
 struct IniKey {

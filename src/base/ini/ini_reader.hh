@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Typed reads of an INI file after the declarations of its keys; unknown keys are found at the end.
+// Reads typed values of an INI file by the declarations of its keys. Unknown keys are reported at the end.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@
 namespace mw::ini {
 
 /// Reads keys and records which keys are known. Each problem is one message to the sink, with file, line and
-/// column. The default is returned then, so that reading continues and reports all problems.
+/// column. The read then returns the default, so that one start reports all problems.
 class IniReader {
   public:
     IniReader(const IniFile &file, diagnostics::Sink &sink)
@@ -47,18 +47,18 @@ class IniReader {
                          std::optional<std::int64_t> preset = {});
     bool boolean(const IniKey &key, std::string_view section = {});
     std::string text(const IniKey &key, std::string_view section = {});
-    /// Returns the word in the spelling of the declaration.
+    /// Returns the word as spelled in the declaration.
     std::string choice(const IniKey &key, std::string_view section = {});
     /// All entries of a key that may be set several times.
     std::vector<const IniEntry *> list(const IniKey &key, std::string_view section = {});
-    /// The entry; null where the key is not set.
+    /// The entry; null if the key is not set.
     const IniEntry *find(const IniKey &key, std::string_view section = {}) const;
 
-    /// Marks a key as used by a program. A section that is not known stays unknown.
+    /// Marks a key as used by a program. Does not make an unknown section known.
     void know_if_ours(std::string_view section, std::string_view key);
     /// Marks the section as used by a HAL file or script.
     void use_section(std::string_view section) { used_sections_.insert(std::string(section)); }
-    /// Declares that other programs define keys of this section, so that none of them is unknown.
+    /// Declares that other programs define keys of this section, so that no key of it is reported as unknown.
     void leave_open(std::string_view section);
 
     /// Warns once for each unknown key in a known section and names the nearest known key; an error when

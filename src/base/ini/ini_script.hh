@@ -11,9 +11,9 @@
 
 namespace mw::ini {
 
-/// Each returns the value, or nothing if it has another type. Lines "file:line: warning: ..." or "error:" are
-/// appended to `messages`. Whole numbers may have a sign and a prefix 0x, 0o or 0b. Text after a number is
-/// ignored with a warning; a negative value of an unsigned number wraps with a warning.
+/// Each function returns the value, or nothing if the value has another type. Lines "file:line: warning: ..."
+/// or "error:" are appended to `messages`. Whole numbers may have a sign and a prefix 0x, 0o or 0b. Text
+/// after a number is ignored with a warning; a negative value of an unsigned number wraps with a warning.
 std::optional<bool> script_bool(const IniEntry &entry, std::string &messages);
 std::optional<std::int64_t> script_signed(const IniEntry &entry, std::string &messages);
 std::optional<std::uint64_t> script_unsigned(const IniEntry &entry, std::string &messages);

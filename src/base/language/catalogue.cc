@@ -138,8 +138,9 @@ std::optional<std::string> Catalogue::find(std::string_view english, Depth depth
     return std::nullopt;
 }
 
-/// A sentence in place of a value, such as after "joint", means another text without a translation. The
-/// beginning of a text is not a place, a name or a sentence with a colon: those are separate parts.
+/// If a value is a sentence (for instance after "joint"), the text is another message without a translation.
+/// A position, a name or a sentence with a colon at the beginning of the text is a separate part and not a
+/// value.
 bool Catalogue::isFitting(const Pattern &pattern, const std::vector<std::string_view> &values,
                           Depth depth) const {
     if (pattern.pieces.front().empty() && values.front().find(": ") != std::string_view::npos) {

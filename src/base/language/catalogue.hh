@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The texts of one language. Messages are made and sent in English. The program that shows a message searches
-// this catalogue for its pattern, so texts need no marks in the sources and each reader has their own
-// language.
+// The texts of one language. Messages are created and sent in English. The program that shows a message
+// searches this catalogue for its pattern. So texts need no marks in the sources, and each user can have a
+// different language.
 #pragma once
 
 #include <optional>
@@ -32,12 +32,12 @@ class Catalogue {
   private:
     struct Pattern {
         std::vector<std::string> pieces;  ///< pieces of the key between values
-        std::size_t letters = 0;          ///< of all pieces
+        std::size_t letters = 0;          ///< letters of all pieces
         bool is_name = false;             ///< a single word, as in "joint {}": the value is a name
         std::string translation;
     };
-    /// Nesting depth of a text, and the number of look-ups left for one message: a message of unknown words
-    /// with many colons has too many parts.
+    /// Nesting depth of a text, and the number of look-ups left for one message. It bounds the search in a
+    /// message that has unknown words and many colons.
     struct Depth {
         int level = 0;
         int *left = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The language of the reader of the texts of this process, determined as by gettext.
+// Selects the language for the texts that this process shows, as gettext does.
 #pragma once
 
 #include <functional>
@@ -18,11 +18,12 @@ namespace mw::language {
 std::vector<std::string> wanted(const std::function<const char *(const char *)> &get);
 
 /// The catalogue for the environment of this process. The first call reads it from share/locale above our
-/// folder; empty if there is none. A catalogue that cannot be read is reported once on standard error.
+/// folder; empty if there is no catalogue. A catalogue that cannot be read is reported once on standard
+/// error.
 const Catalogue &catalogue();
 
-/// `english` in the language of the environment. For texts that a person reads, not a program. [any thread,
-/// not realtime]
+/// `english` in the language of the environment. For texts that a person reads, not for texts that a program
+/// reads. [any thread, not realtime]
 std::string shown(std::string_view english);
 
 /// Prints `english` as a line on standard error, in the language of the environment. Output for programs goes

@@ -40,7 +40,7 @@ std::string without_mark(const std::string &word) {
     return word.starts_with(PLAIN) ? word.substr(1) : word;
 }
 
-/// Passes an error through CLI11.
+/// An exception that carries an error through CLI11.
 struct Refused {
     Error error;
 };
@@ -118,7 +118,7 @@ Result<std::int64_t> CommandLine::whole_number(const std::string &text, std::int
     return *number;
 }
 
-/// Passes the words of all occurrences.
+/// Passes the words of all occurrences of the option.
 void CommandLine::hand_over(const Option &option, const Words &values) {
     const std::size_t step = option.words == 0 ? 1 : static_cast<std::size_t>(option.words);
     if (values.size() % step != 0) {
@@ -165,7 +165,7 @@ Error CommandLine::unknown(const std::string &word) const {
 Result<> CommandLine::parse(const Words &words) const {
     CLI::App app;
     app.set_help_flag();
-    app.allow_extras();  // they are reported in our words
+    app.allow_extras();  // this class reports unknown words with its own message
     Words rest;
     for (const Option &option : options_) {
         const auto taken = [&option](const Words &values) { hand_over(option, values); };

@@ -26,11 +26,11 @@ class CommandLine {
 
     void flag(const std::string &names, const std::string &doc, bool &into, bool value = true);
     void text(const std::string &names, const std::string &what, const std::string &doc, std::string &into);
-    /// May occur several times.
+    /// An option that may occur several times.
     void texts(const std::string &names, const std::string &what, const std::string &doc, Words &into);
-    /// "on" or "off".
+    /// An option with the value "on" or "off".
     void on_or_off(const std::string &names, const std::string &doc, bool &into);
-    /// From `low` to `high`.
+    /// A number from `low` to `high`.
     void number(const std::string &names, const std::string &what, const std::string &doc, double &into,
                 double low, double high);
     /// A whole number from `low` to `high`.
@@ -61,7 +61,7 @@ class CommandLine {
     /// Text of --help after the options.
     void footer(std::string text) { footer_ = std::move(text); }
 
-    /// An error names the option, and for an unknown option the nearest one.
+    /// An error names the option. For an unknown option it also names the most similar option.
     Result<> parse(const Words &words) const;
     std::string help() const;
 
@@ -84,7 +84,7 @@ class CommandLine {
     bool is_rest_text_ = false;
 };
 
-/// One of the words requests help.
+/// True if one of the words requests help.
 bool wantsHelp(const Words &words);
 
 }  // namespace mw::options

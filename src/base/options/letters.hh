@@ -28,10 +28,10 @@ struct Letters {
     std::vector<std::string> words;  ///< the other words
 };
 
-/// Where options end.
+/// The word that ends the options.
 enum class EndOfLetters : std::uint8_t {
-    FIRST_WORD,  ///< the words after the first non-option belong to it
-    ALL_WORDS,   ///< options may follow other words
+    FIRST_WORD,  ///< the first word that is not an option; the later words belong to it
+    ALL_WORDS,   ///< no word: options may follow other words
 };
 
 /// "--" ends the options; "-" is a word. The first word --help means -h.

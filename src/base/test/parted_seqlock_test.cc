@@ -75,7 +75,7 @@ TEST(PartedSeqlock, AReaderThatHasMissedWritesGetsTheirPartsTogether) {
 }
 
 /// Each write moves one unit from a row to the next, and every few writes publish all rows. Rows of different
-/// writes do not add up.
+/// writes have a different sum.
 TEST(PartedSeqlock, ReadersNeverSeePartsOfDifferentWrites) {
     auto lock = std::make_unique<Parted>();
     Picture picture;

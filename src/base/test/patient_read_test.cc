@@ -94,7 +94,7 @@ TEST_F(InterruptedWriter, IsWaitedForAndNeverReadInHalf) {
 
 TEST_F(InterruptedWriter, ThatIsDeadWithinAWriteIsGivenUp) {
     Large value;
-    do {  // until it is stopped during a write
+    do {  // repeated until the writer is stopped during a write
         kill(writer, SIGCONT);
         std::this_thread::sleep_for(std::chrono::microseconds(100));
         kill(writer, SIGSTOP);

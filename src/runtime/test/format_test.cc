@@ -74,7 +74,7 @@ TEST(Format, CutsAndTellsTheWholeLength) {
 }
 
 TEST(Format, KnowsNoLocale) {
-    // Not every system has this locale; without it the test checks less.
+    // A system may not have this locale; the test then checks less.
     std::setlocale(LC_ALL, "de_DE.UTF-8");
     EXPECT_EQ(ours("%.1f", 1.5), "1.5");
     std::setlocale(LC_ALL, "C");

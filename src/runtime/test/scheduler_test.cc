@@ -176,7 +176,7 @@ TEST(RealtimeScheduler, LateThreadsSkipReleasesAndCountThem) {
 }
 
 TEST(RealtimeScheduler, SaysOnceWhatIsMissing) {
-    // Depends on the user: with the privilege nothing is reported.
+    // The messages depend on the user: with the privilege nothing is reported.
     std::vector<std::string> lines;
     {
         Log log(

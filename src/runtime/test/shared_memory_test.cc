@@ -77,7 +77,7 @@ TEST(SharedMemory, ReplacesWhatADeadOwnerLeft) {
         ::_exit(mine ? 0 : 1);
     }
     ::waitpid(child, nullptr, 0);
-    // The child made the name from its own number.
+    // The child derived the name from its process id.
     const std::string of_child = "millwright-test-" + std::to_string(child) + "-stalex";
     ASSERT_TRUE(SharedMemory::attach(of_child, LAYOUT)) << "it is still there";
     auto next = SharedMemory::create(of_child, 200, 200, LAYOUT);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The built catalogues, read as by gettext and queried for texts that the machine makes.
+// Reads the built catalogues as gettext does, and searches them for messages of the machine.
 #include <chrono>
 #include <cstdint>
 #include <fstream>
@@ -137,7 +137,7 @@ TEST(Catalogue, EachTextIsFoundAgainWithWhateverIsPutIntoIt) {
             ASSERT_TRUE(found.has_value()) << key;
             others += *found != put_in(translation, values)
                           ? 1
-                          : 0;  // another text with as many letters also matches
+                          : 0;  // another text with the same number of letters also matches
         }
         EXPECT_LT(others, 8) << language;
     }
@@ -169,7 +169,7 @@ TEST(Catalogue, ADamagedFileIsAnErrorAtEachLength) {
     std::string bad = whole;
     for (std::size_t at = 8; at < 400; ++at) {  // counts, tables and rows
         bad[at] = static_cast<char>(bad[at] ^ 0x7f);
-        static_cast<void>(Catalogue::read(bad));  // only that it ends
+        static_cast<void>(Catalogue::read(bad));  // checks only that read() returns
         bad[at] = whole[at];
     }
 }
