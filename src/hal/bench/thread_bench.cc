@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The time of HAL itself in a period of the virtual clock. It limits how much faster than realtime a machine
-// can run (200 times at 1 ms leaves 5 us for everything).
+// The time of HAL itself in a period of the virtual clock. It limits the speed of a simulation: 200 times
+// realtime at a period of 1 ms leaves 5 us for all work.
 #include <string>
 
 #include <benchmark/benchmark.h>

@@ -51,7 +51,8 @@ ProcessAttachment &attachment() {
     return *the_attachment;
 }
 
-/// The current instance; joins the one of the environment if the process has none. Each call needs a leave().
+/// The current instance; joins the instance of the environment if the process has none. Each call of joined()
+/// needs a leave().
 Instance *joined() {
     ProcessAttachment &here = attachment();
     const std::lock_guard lock(here.mutex);

@@ -39,9 +39,9 @@ struct Region {
 struct PortMap {
     std::mutex mutex;
     std::array<Region, REGIONS> regions{};
-    // A bit per permitted port. Relaxed: `epoch` orders it.
+    // A bit per permitted port. Relaxed, because `epoch` gives the order.
     std::array<std::atomic<std::uint64_t>, PORTS / 64> allowed{};
-    // Released after a change of `allowed`; acquired by threads that compare it with theirs.
+    // Released after a change of `allowed`; acquired by threads that compare it with their own value.
     std::atomic<std::uint32_t> epoch{1};
     std::atomic<bool> complained{false};
 
@@ -68,7 +68,7 @@ int allow_here(unsigned long from, unsigned long count, bool on) noexcept {
 #endif
 }
 
-/// Gives this thread the permissions of the process; at most once per change.
+/// Sets the permissions of the process for this thread, at most once per change.
 void take_permissions() noexcept {
     thread_local std::uint32_t seen = 0;
     PortMap &map = port_map();

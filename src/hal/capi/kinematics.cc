@@ -13,7 +13,7 @@ constexpr int AXES = 9;
 constexpr int JOINTS = 16;
 constexpr const char *LETTERS = "XYZABCUVW";
 
-/// The last mapping. The C interface has one for all modules, which are set up one after the other.
+/// The last mapping. The C interface has one mapping for all modules, which are set up one after the other.
 struct Mapping {
     std::array<int, JOINTS> axis{};
     bool isMade = false;

@@ -80,7 +80,7 @@ bool isEqual(rtapi_u32 wanted, rtapi_u32 there) {
 
 const rtapi_pci_device_id *find_entry(const rtapi_pci_device_id *table, const rtapi_pci_dev &card) {
     for (; table->vendor != 0 || table->device != 0 || table->subvendor != 0; ++table) {
-        // Zeros in the second half of a short entry match anything.
+        // Zeros in the second half of a short entry match all cards.
         const bool any_sub = table->subvendor == 0 && table->subdevice == 0;
         const bool is_sub = any_sub || (isEqual(table->subvendor, card.subsystem_vendor) &&
                                         isEqual(table->subdevice, card.subsystem_device));
@@ -147,7 +147,7 @@ int rtapi_pci_register_driver(struct rtapi_pci_driver *driver) {
         return complain(EINVAL, "a PCI driver needs a table of ids and a probe function");
     }
     driver->devices = nullptr;
-    // Another process may control a machine through the cards of this computer.
+    // Another process may control a machine through the PCI cards of this computer.
     if (mw_ext_is_virtual() != 0 && std::getenv("MILLWRIGHT_SYSFS") == nullptr) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: PCI cards are not used under the virtual clock\n",
                         driver->name == nullptr ? "PCI driver" : driver->name);

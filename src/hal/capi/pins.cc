@@ -13,7 +13,7 @@ Type type_of(hal_type_t type) {
     return static_cast<Type>(type);
 }
 
-/// A name formatted as by printf; empty, and reported, when it is too long.
+/// A name formatted as by printf. A name that is too long is reported and left empty.
 struct FormattedName {
     char text[NAME_LENGTH + 1];
     bool good;

@@ -121,7 +121,7 @@ void fill(hal_query_t &query, const ThreadInfo &info) {
     query.thread.tmax_nsec = static_cast<long>(info.tmax_ns);
 }
 
-/// The pattern of a list query.
+/// Returns the pattern of a list query.
 std::string pattern_of(const hal_query_t *query) {
     return query == nullptr || query->name == nullptr ? "*" : query->name;
 }
@@ -143,7 +143,7 @@ int call_each(const std::vector<Info> &infos, hal_query_cb cb, void *arg) {
     return 0;
 }
 
-/// Calls back for what `found(hal, pattern)` returns.
+/// Calls back for each object that `found(hal, pattern)` returns.
 template <class Find>
 int list(const hal_query_t *query, hal_query_cb cb, void *arg, Find found) {
     if (cb == nullptr) {
@@ -156,7 +156,7 @@ int list(const hal_query_t *query, hal_query_cb cb, void *arg, Find found) {
     });
 }
 
-/// Fills `query` with `info`, if both are there.
+/// Fills `query` with `info`, if neither is null.
 template <class Info>
 int give(const Result<Info> &info, hal_query_t *query) {
     if (!info || query == nullptr) {
@@ -167,7 +167,7 @@ int give(const Result<Info> &info, hal_query_t *query) {
     return 0;
 }
 
-/// Pins and parameters: their part of a query, and how they are found and set. A parameter takes precedence.
+/// Pins and parameters: fills their part of a query, finds them and sets them. A parameter takes precedence.
 struct PinsAndParams {
     static hal_query_pp_t &part(hal_query_t &query) { return query.pp; }
     static bool isFilled(Instance &hal, hal_query_t &query, const std::string &name) {
@@ -181,7 +181,7 @@ struct PinsAndParams {
     }
 };
 
-/// As PinsAndParams.
+/// As PinsAndParams, for signals.
 struct OfSignals {
     static hal_query_sig_t &part(hal_query_t &query) { return query.sig; }
     static bool isFilled(Instance &hal, hal_query_t &query, const std::string &name) {
@@ -192,7 +192,7 @@ struct OfSignals {
     }
 };
 
-/// Fills `query` with the object of its name.
+/// Fills `query` with the object that has its name.
 template <class Objects>
 int look_up(Instance &hal, hal_query_t *query) {
     if (query == nullptr || query->name == nullptr) {
@@ -280,7 +280,7 @@ int hal_comp_by_name(const char *name, hal_query_t *q) {
         [&](Instance &hal) { return give(hal.components().find(name == nullptr ? "" : name), q); });
 }
 
-/// hal_list_SUFFIX for what REGISTRY lists.
+/// hal_list_SUFFIX for the objects of REGISTRY.
 #define MW_EXPORT_LIST(SUFFIX, REGISTRY)                                                                     \
     int hal_list_##SUFFIX(hal_query_t *q, hal_query_cb cb, void *arg) {                                      \
         return list(q, cb, arg,                                                                              \
@@ -437,7 +437,7 @@ hal_realtime_type_t hal_get_realtime_type(void) {
 }
 
 void hal_enforce_exact_base_period(void) {
-    // Every thread already has exactly its period.
+    // Every thread already has exactly the requested period.
 }
 
 int hal_mutex_force_release(void) {

@@ -184,7 +184,7 @@ size_t rtapi_strlcat(char *dst, const char *src, size_t size) {
 }
 
 char **rtapi_argv_split(rtapi_gfp_t /*flags*/, const char *argstr, int *argc) {
-    // One block: the vector, then the words that it refers to.
+    // One block of memory: the vector, then the words to which it points.
     const size_t length = std::strlen(argstr);
     const size_t most = length / 2 + 2;
     char **argv = static_cast<char **>(std::malloc(most * sizeof(char *) + length + 1));

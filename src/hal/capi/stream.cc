@@ -24,7 +24,7 @@ constexpr unsigned MOST_RECORDS = 1U << 20U;
 struct hal_stream_fifo {
     std::uint32_t magic;
     std::int32_t creator;
-    std::uint32_t depth;  // as requested
+    std::uint32_t depth;  // as requested by the caller
     std::uint32_t slots;  // the depth, at least 2
     std::uint32_t fields;
     std::uint8_t types[HAL_STREAM_MAX_PINS];

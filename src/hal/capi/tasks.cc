@@ -67,9 +67,10 @@ struct Registry {
     int last_id = 0;
 };
 
-/// A semaphore in a fixed slot, so that give and try find it without a lock.
+/// A semaphore in a fixed slot, so that rtapi_sem_give and rtapi_sem_try find it without a lock.
 struct Semaphore {
-    // Released after the rest is filled; 0: free. An id is the slot number plus a multiple of SEMAPHORES.
+    // Released after the other fields are filled; 0: free. An id is the slot number plus a multiple of
+    // SEMAPHORES.
     std::atomic<int> id{0};
     const Instance *hal = nullptr;
     int key = 0;
@@ -351,7 +352,7 @@ int rtapi_sem_give(int sem_id) {
     if (semaphore == nullptr) {
         return -EINVAL;
     }
-    // A semaphore of RTAPI is a lock: a second give has no effect.
+    // An RTAPI semaphore is a lock: a second give has no effect.
     int value = 0;
     ::sem_getvalue(&semaphore->sem, &value);
     return value > 0 || ::sem_post(&semaphore->sem) == 0 ? 0 : -errno;
@@ -391,7 +392,7 @@ int rtapi_fifo_new(int key, int /*module_id*/, unsigned long int size, char mode
         if (!block) {
             return complain(block.error());
         }
-        // Of two processes that open it at once, one sets the size.
+        // If two processes open the queue at the same time, only one sets the size.
         std::uint32_t unset = 0;
         std::atomic_ref(static_cast<Fifo *>(hal.memory().at(block->memory))->size)
             .compare_exchange_strong(unset, room);

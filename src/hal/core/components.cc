@@ -29,7 +29,7 @@ CompInfo info_of(const Segment &segment, const CompRecord &comp) {
     return info;
 }
 
-/// `code`: of the failure.
+/// `code` is the errno of the failure.
 Result<CompRecord *> existing(const Segment &segment, int comp_id, int code) {
     CompRecord *comp = find_comp(segment, comp_id);
     if (comp == nullptr) {

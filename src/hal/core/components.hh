@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The components of an instance. Invariant: ids and names are unique, and all that a component owns leaves
-// with it. Not realtime-safe. [any non-realtime thread and process]
+// The components of an instance. Invariant: ids and names are unique, and a component is removed together
+// with everything that it owns. Not realtime-safe. [any non-realtime thread and process]
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct CompInfo {
     CompType type = CompType::USER;
     bool isReady = false;
     int pid = 0;
-    std::string insmod_args;  ///< of loadrt; empty for others
+    std::string insmod_args;  ///< parameters from loadrt; empty for programs
     bool is_loaded_by_loadrt = false;
 };
 
@@ -45,10 +45,10 @@ class Components {
     /// Sorted by name; `glob` takes * ? [abc].
     std::vector<CompInfo> list(std::string_view glob = "*") const;
     bool has(std::string_view name) const;
-    /// An error includes the nearest known name.
+    /// An error includes the most similar name.
     Result<CompInfo> find(std::string_view name) const;
     Result<CompInfo> find(int comp_id) const;
-    /// The name in the memory of the instance, valid until the component is removed; null: there is none.
+    /// The name in the memory of the instance, valid until the component is removed; null if there is none.
     char *stored_name(int comp_id) const;
     /// Id of the next component that any process adds.
     int next_id() const;
@@ -56,7 +56,7 @@ class Components {
     /// Makes another instance of a loaded component from a name and an argument; returns 0 or a negated
     /// errno.
     using Constructor = int (*)(const char *, const char *);
-    /// For components of this process.
+    /// Only for components of this process.
     void set_constructor(int comp_id, Constructor make);
     /// Null when the component has none.
     Constructor constructor(int comp_id) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The modules of this realtime process that must know of the end of the controlling process, and report when
-// the machine is stopped and off. [the host's thread] The words that they share with their module are atomic,
-// so the module reads and writes its own in any thread.
+// The modules of this realtime process that need to know when the controlling process ends, and that report
+// when the machine is stopped and off. [the host's thread] The shared words are atomic, so a module accesses
+// them in any thread.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,11 @@ namespace mw::hal {
 
 class ControllerWatches {
   public:
-    /// `is_gone` is set to 1 at the end of the controlling process; the module sets `is_safe` to other than 0
-    /// when its machine is stopped and off. Both are memory of the component.
+    /// `is_gone` is set to 1 at the end of the controlling process; the module sets `is_safe` to a nonzero
+    /// value when its machine is stopped and off. Both are memory of the component.
     void add(std::uint32_t *is_gone, const std::uint32_t *is_safe, int comp_id);
-    /// From now on, count_check() increments `checks`; false: the component does not watch.
+    /// From now on, count_check() increments `checks`. Returns false if the component does not watch the
+    /// controlling process.
     bool count_checks(int comp_id, std::uint32_t *checks);
     void remove(int comp_id);
     bool isEmpty() const noexcept { return watches_.empty(); }

@@ -102,7 +102,8 @@ void on_crash(int number, siginfo_t *info, void * /*context*/) {
     if (fatal != FATAL.end()) {
         ::sigaction(number, &prepared.before[static_cast<std::size_t>(fatal - FATAL.begin())], nullptr);
     }
-    // A fault occurs again on return and ends the process; a signal that was sent must be sent again.
+    // After the handler returns, a fault occurs again and ends the process. A signal from kill() does not, so
+    // it is sent again.
     if (info->si_code <= 0) {
         ::raise(number);
     }

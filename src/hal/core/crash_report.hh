@@ -13,7 +13,7 @@ namespace mw::hal {
 /// handlers are called afterwards.
 void report_crashes(const std::string &program, const std::vector<std::string> &leftovers = {});
 
-/// Names what this thread does, for the message of a crash outside of HAL threads; null: nothing. The text
+/// Sets the activity of this thread that a crash report outside of HAL threads names; null: none. The text
 /// must stay valid. [any thread, realtime-safe]
 void set_activity(const char *activity) noexcept;
 

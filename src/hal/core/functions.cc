@@ -32,7 +32,8 @@ Result<> Functions::create(std::string_view name, const FunctionCode &code, int 
     funct->function = reinterpret_cast<std::uint64_t>(code.function);
     funct->argument = reinterpret_cast<std::uint64_t>(code.argument);
     segment_.insert(Kind::FUNCT, *funct);
-    // Names too long for the three pins are an error too; pins created so far are removed with the component.
+    // If the names of the three pins are too long, it is an error, too. Pins created so far are removed with
+    // the component.
     const std::string prefix(name);
     auto made =
         add_pin(segment_, **comp,

@@ -24,11 +24,11 @@ struct FunctionInfo {
     int users = 0;  ///< number of uses in threads
     bool reentrant = false;
     bool usesFloat = false;
-    std::uint64_t address = 0;  ///< in the realtime process
+    std::uint64_t address = 0;  ///< in the memory of the realtime process
     std::uint64_t argument = 0;
 };
 
-/// What a thread calls: function(argument, period in ns).
+/// The function that a thread calls, as function(argument, period in ns).
 struct FunctionCode {
     void (*function)(void *, long) = nullptr;
     void *argument = nullptr;

@@ -20,7 +20,7 @@ using namespace detail;
 
 namespace {
 
-// The C API has no argument for the instance, so a process needs a default one.
+// The default instance of the process, because the C API has no argument for the instance.
 std::atomic<Instance *> process_instance{nullptr};
 
 /// Instance names become file names.

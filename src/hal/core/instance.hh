@@ -45,12 +45,14 @@ struct InstanceOptions {
     std::string name = "default";
     bool isShared = false;  ///< in shared memory for other processes, or private to this process
     runtime::Scheduler *scheduler = nullptr;  ///< runs the threads; must outlive the instance
-    runtime::Log *log = nullptr;              ///< must outlive the instance; null: a separate log to stderr
+    runtime::Log *log = nullptr;              ///< must outlive the instance; null: a separate log on standard
+                                              ///< error
 };
 
 class Instance {
   public:
-    /// Creates the instance and becomes its realtime host. A shared one replaces the remains of a dead host.
+    /// Creates the instance and becomes its realtime host. A shared instance replaces the remains of a dead
+    /// host.
     static Result<std::unique_ptr<Instance>> create(const InstanceOptions &options);
     /// Joins a shared instance of this user; an error when it has no host or another version.
     static Result<std::unique_ptr<Instance>> attach(std::string_view name);
@@ -63,13 +65,14 @@ class Instance {
     runtime::Log &log() noexcept { return *log_; }
     /// The scheduler of the host; null in an attached process.
     runtime::Scheduler *scheduler() noexcept { return scheduler_; }
-    /// [any thread, realtime-safe]
+    /// True under the virtual clock. [any thread, realtime-safe]
     bool isVirtual() const noexcept;
-    /// rtapi_get_time: of the scheduler in the host, of the same clock elsewhere. [any thread, realtime-safe]
+    /// Time of rtapi_get_time: in the host from its scheduler, in other processes from the same clock. [any
+    /// thread, realtime-safe]
     std::int64_t now_ns() const noexcept;
     Result<> set_lock(std::uint8_t lock);
     std::uint8_t lock() const noexcept;
-    /// The host's loader of modules; null: there is none. It sets itself.
+    /// The host's loader of modules; null if there is none. The loader sets this pointer.
     Loader *loader() noexcept { return loader_; }
     void set_loader(Loader *loader) noexcept { loader_ = loader; }
 
@@ -112,7 +115,7 @@ class Instance {
 /// The instance of the C API: this thread's override, else the process's, else null. [any thread,
 /// realtime-safe]
 Instance *current() noexcept;
-/// Sets the process's instance; null when it ends.
+/// Sets the process's instance; null removes it.
 void set_process_instance(Instance *hal) noexcept;
 
 /// Makes an instance the current one of this thread during its lifetime: for loading modules, and for tests
@@ -128,7 +131,7 @@ class UseInstance {
     Instance *before_;
 };
 
-/// $MILLWRIGHT_INSTANCE, or "default". Instances of different users never meet.
+/// $MILLWRIGHT_INSTANCE, or "default". Instances of different users are separate.
 std::string default_instance();
 
 /// The name of an instance's shared memory.

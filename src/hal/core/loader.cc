@@ -35,7 +35,7 @@ struct Loader::Module {
     std::string file;
     void *handle = nullptr;
     std::vector<const rtapi_mp_info *> parameters;
-    std::deque<std::string> texts;  ///< storage of string parameters
+    std::deque<std::string> texts;  ///< storage for the values of string parameters
     std::vector<int> comp_ids;      ///< components of its rtapi_app_main
     std::vector<int> users;         ///< components that use its symbols
     std::vector<std::string> uses;  ///< modules whose symbols it uses
@@ -129,7 +129,7 @@ Result<> set_parameter(const rtapi_mp_info &info, std::string_view text, std::de
     }
 }
 
-/// A copy in memory, which the linker treats as another library, with its own statics.
+/// Copies the module in memory. The linker treats the copy as another library with its own statics.
 int copy_in_memory(const std::string &file) {
     const int from = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     const int to = ::memfd_create("millwright-module", MFD_CLOEXEC);
@@ -207,8 +207,7 @@ bool Loader::isLoading() noexcept {
 }
 
 void Loader::add_parameter(const rtapi_mp_info *info) {
-    // For programs and libraries that include the macros without being loaded as modules there is no
-    // receiver.
+    // Programs and libraries that include the macros but are not loaded as modules have no receiver.
     if (auto *parameters = context().parameters) {
         parameters->push_back(info);
     }
@@ -238,7 +237,7 @@ std::vector<std::string> Loader::modules() const {
 }
 
 Result<> Loader::open(Module &module) {
-    // Two threads that open one file must not both treat it as the first.
+    // If two threads open one file, only one may treat it as the first.
     static std::mutex opening;
     const std::lock_guard lock(opening);
     std::string path = module.file;
@@ -263,7 +262,8 @@ Result<> Loader::open(Module &module) {
 }
 
 /// Opens the file. A missing symbol is taken from a loaded module that exports it: that module's symbols
-/// become visible to later ones, and it stays loaded while this one uses it. Empty, or the reason.
+/// become visible to later ones, and it stays loaded while this one uses it. Returns the reason of a failure;
+/// empty on success.
 std::string Loader::link(Module &module, const std::string &path) {
     std::string last_missing;
     while (true) {
@@ -398,7 +398,7 @@ Result<> Loader::load(const std::string &name, const std::vector<std::string> &a
     return {};
 }
 
-/// Removes the module's remains, then the module.
+/// Removes everything that the module left, then the module.
 void Loader::close(Module &module) {
     for (const int id : module.comp_ids) {
         const auto comp = hal_.components().find(id);
@@ -446,8 +446,8 @@ Result<> Loader::unload(const std::string &name) {
 Result<> Loader::unload_all() {
     Result<> first_failure;
     (void)hal_.threads().stop();
-    // Users follow the modules that they use, unless modules were unloaded and loaded again; so several
-    // rounds are needed.
+    // Modules are usually unloaded before the modules that they use. After a reload the order may differ, so
+    // several rounds are needed.
     for (std::size_t rounds = modules_.size(); rounds > 0 && !modules_.empty(); --rounds) {
         for (std::size_t i = modules_.size(); i > 0; --i) {
             const std::string name = modules_[i - 1]->name;

@@ -17,15 +17,15 @@ class Instance;
 
 class Loader {
   public:
-    /// Searches NAME.so in `folders`; the first match is used.
+    /// Searches NAME.so in `folders` and loads the first match.
     Loader(Instance &hal, std::vector<std::string> folders);
-    /// Unloads all, newest first.
+    /// Unloads all modules, newest first.
     ~Loader();
     Loader(const Loader &) = delete;
     Loader &operator=(const Loader &) = delete;
 
-    /// $MILLWRIGHT_MODULE_PATH (colon separated), then the folder of modules beside this program (../lib in a
-    /// build folder, ../lib/millwright/modules installed).
+    /// $MILLWRIGHT_MODULE_PATH (colon separated), then the module folder relative to this program (../lib in
+    /// a build folder, ../lib/millwright/modules when installed).
     static std::vector<std::string> default_folders();
 
     /// True while this thread runs the rtapi_app_main of a module. [any thread]
@@ -34,14 +34,14 @@ class Loader {
     static void add_parameter(const rtapi_mp_info *info);
 
     /// Loads a module and runs its rtapi_app_main with `args` ("count=2", "names=a,b"). Every instance and
-    /// every load has its own module statics. A failure leaves nothing behind; its message includes the
-    /// module's log.
+    /// every load has its own module statics. After a failure nothing of the module remains; the message
+    /// includes the module's log.
     Result<> load(const std::string &name, const std::vector<std::string> &args);
     /// Runs rtapi_app_exit. Rejected while another module uses its symbols.
     Result<> unload(const std::string &name);
     Result<> unload_all();
     bool isLoaded(std::string_view name) const;
-    /// Newest last.
+    /// The loaded modules, newest last.
     std::vector<std::string> modules() const;
 
     /// A symbol that a loaded module exports (newest first), or null.

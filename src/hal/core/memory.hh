@@ -19,16 +19,16 @@ struct BlockRecord;
 
 struct RecordCount {
     int active = 0;
-    int recycled = 0;  ///< removed records that will be reused
+    int recycled = 0;  ///< removed records available for reuse
 };
 
 struct MemoryStatistics {
-    std::size_t segment_bytes = 0;  ///< in use now
+    std::size_t segment_bytes = 0;  ///< size of the segment now
     std::size_t capacity_bytes = 0;
     RecordCount components, pins, aliases, signals, params, functs, threads;
 };
 
-/// A distance in the memory of an instance, the same in every process; 0: none.
+/// An offset in the memory of an instance, the same in every process; 0: none.
 using Reference = std::uint32_t;
 
 /// A block of rtapi_shmem_* or rtapi_fifo_*.
@@ -43,9 +43,10 @@ class Memory {
 
     /// 8-byte aligned zeroed memory; null when none is left.
     void *allocate(std::size_t bytes);
-    /// Null for 0. The reference must come from reference_of(). [any thread, realtime-safe]
+    /// Address of a reference, null for 0. The reference must come from reference_of(). [any thread,
+    /// realtime-safe]
     void *at(Reference reference) const noexcept;
-    /// As at() for a reference of unknown origin; null unless `bytes` from there on are allocated.
+    /// As at() for a reference of unknown origin; null unless `bytes` from that address on are allocated.
     /// [any thread, realtime-safe]
     void *checked_at(std::int64_t reference, std::size_t bytes) const noexcept;
     /// `address` must be in this memory. [any thread, realtime-safe]
@@ -57,9 +58,9 @@ class Memory {
     Result<SharedBlock> open_block(int key, std::size_t bytes);
     /// As open_block(), for a block that is never closed.
     Result<void *> shared_block(int key, std::size_t bytes);
-    /// `id` must be of open_block(). [any thread, realtime-safe]
+    /// Address of a block; `id` must be from open_block(). [any thread, realtime-safe]
     void *block_memory(int id) const noexcept;
-    /// One user less; false when there is no user.
+    /// Removes one user of a block; false when it has no user.
     bool close_block(int id);
     bool close_block_at(Reference memory);
 

@@ -32,13 +32,13 @@ class Params {
 
     /// `address` must be in memory of Memory::allocate().
     Result<> create(std::string_view name, Type type, Dir dir, void *address, int comp_id);
-    /// An empty alias removes it.
+    /// An empty alias removes the alias.
     Result<> set_alias(std::string_view name, std::string_view alias);
 
     /// Sorted by name; `glob` takes * ? [abc] and is matched with the name and the alias.
     std::vector<ParamInfo> list(std::string_view glob = "*") const;
     bool has(std::string_view name) const;
-    /// An error includes the nearest known name.
+    /// An error includes the most similar name.
     Result<ParamInfo> find(std::string_view name) const;
     Result<Value> get(std::string_view name) const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The pins of an instance. Invariant: a pin's slot, in memory of its component, always points to a value of
-// the pin's type: its own, or that of its signal. A pin is found by its name and by its alias. Not
+// the pin's type: its own value or the value of its signal. A pin is found by its name and by its alias. Not
 // realtime-safe, unless stated otherwise. [any non-realtime thread and process]
 #pragma once
 
@@ -38,18 +38,19 @@ class Pins {
     Result<> create(std::string_view name, Type type, Dir dir, void **slot, int comp_id);
     /// A pin with its own slot, for programs without a struct; read and write through the returned slot.
     Result<void **> create(std::string_view name, Type type, Dir dir, int comp_id);
-    /// The value that an output takes when its process dies; 0, FALSE without one.
+    /// The value that an output takes when its process dies; without a declaration 0 or FALSE.
     Result<> set_safe_value(std::string_view name, const Value &value);
-    /// An empty alias removes it.
+    /// An empty alias removes the alias.
     Result<> set_alias(std::string_view name, std::string_view alias);
 
     /// Sorted by name; `glob` takes * ? [abc] and is matched with the name and the alias.
     std::vector<PinInfo> list(std::string_view glob = "*") const;
     bool has(std::string_view name) const;
-    /// An error includes the nearest known name.
+    /// An error includes the most similar name.
     Result<PinInfo> find(std::string_view name) const;
     Result<Value> get(std::string_view name) const;
-    /// Number of changes of slots by links and unlinks. [any thread, realtime-safe]
+    /// Number of changes of slots by links and unlinks; a change means that values must be written again.
+    /// [any thread, realtime-safe]
     const std::atomic<std::uint32_t> &link_changes() const noexcept;
 
   private:

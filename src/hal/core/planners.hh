@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Planners of modules: periodic functions of the realtime process in separate threads, for work that may take
-// longer than a servo period. Each runs with its instance as the current one. Not realtime-safe. [any
-// non-realtime thread of the host]
+// longer than a servo period. In each function the current instance is its own instance. Not realtime-safe.
+// [any non-realtime thread of the host]
 #pragma once
 
 #include <cstdint>
@@ -32,9 +32,9 @@ class Planners {
 
     /// Returns the id.
     Result<int> create(const std::string &name, std::int64_t period_ns, const PlannerCode &code);
-    /// False when there is none with this id.
+    /// False when no planner has this id.
     bool remove(int id);
-    /// At the end of the instance.
+    /// Removes all planners, at the end of the instance.
     void remove_all();
 
   private:
@@ -44,7 +44,7 @@ class Planners {
     Instance &instance_;
     detail::Segment &segment_;
     runtime::Scheduler *scheduler_;
-    std::vector<std::unique_ptr<Runner>> runners_;  ///< under the segment's lock
+    std::vector<std::unique_ptr<Runner>> runners_;  ///< changed under the segment's lock
     int last_id_ = 0;
 };
 

@@ -79,7 +79,7 @@ std::vector<DeathInfo> Processes::deaths() const {
     for (std::uint32_t i = header.death_count - kept; i != header.death_count; ++i) {
         const DeathRecord &death = header.deaths[i % DEATHS];
         const std::string name = death.name.data();
-        // Only the last death of a component counts, and none of a restarted one.
+        // Only the last death of a component is kept, and none of a component that was restarted.
         std::erase_if(deaths, [&](const DeathInfo &earlier) { return earlier.name == name; });
         if (segment_.find(Kind::COMP, name) == nullptr) {
             deaths.push_back({name, death.pid, death.time_ns});

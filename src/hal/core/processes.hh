@@ -28,7 +28,7 @@ class Processes {
   public:
     Processes(detail::Segment &segment, ControllerWatches &watches) : segment_(segment), watches_(watches) {}
 
-    /// Other processes with components, each once.
+    /// The other processes with components, each listed once.
     std::vector<runtime::ProcessId> others() const;
     /// Removes components whose process has ended, after setting their outputs to safe values. Returns their
     /// names. A process with threads counts as ended as soon as its first thread has ended, before its pidfd
@@ -36,12 +36,14 @@ class Processes {
     std::vector<std::string> reap_dead();
     /// The process of this component will be ended on request, which does not count as a death.
     Result<> expect_end(int comp_id);
-    /// The last components (at most 16) whose process died, oldest first; without those that were restarted.
+    /// The last components (at most 16) whose process died, oldest first; without components that were
+    /// restarted.
     std::vector<DeathInfo> deaths() const;
-    /// Keeps the components of this process until spare(0), also against reaping: the machine brakes through
-    /// their outputs.
+    /// Keeps the components of this process until spare(0), also when reap_dead() runs, because the machine
+    /// brakes through their outputs.
     void spare(std::int32_t pid);
-    /// The process is stopped or hangs: its bit outputs take their safe values until it writes them again.
+    /// For a process that is stopped or hangs: sets its bit outputs to their safe values until the process
+    /// writes them again.
     void set_safe_outputs(std::int32_t pid);
 
   private:

@@ -23,7 +23,7 @@ SignalRecord *find_signal(const Segment &segment, std::string_view name) noexcep
     return segment.find_as<SignalRecord>(Kind::SIGNAL, name);
 }
 
-/// Name of a pin that writes the signal, for messages; a pin that is only about to be linked is not found.
+/// Name of a pin that writes the signal, for messages; a pin that is not linked yet is not found.
 std::string writer_of(const Segment &segment, const SignalRecord &signal) {
     std::string text = "another pin of the same net";
     const SignalRecord *real = find_signal(segment, signal.name_view());
@@ -209,7 +209,7 @@ Result<> Signals::net(std::string_view signal_name, const std::vector<std::strin
         return refuse(EINVAL, fmt::format("'{}' is the name of a pin", signal_name),
                       "the first word after net is the signal's name");
     }
-    // Tries on a copy, so that nothing changes unless all pins can be linked.
+    // Links a copy first, so that nothing changes unless all pins can be linked.
     SignalRecord trial{};
     if (signal != nullptr) {
         trial.type = signal->type;

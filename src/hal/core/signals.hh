@@ -46,7 +46,7 @@ class Signals {
     /// Sorted by name; `glob` takes * ? [abc].
     std::vector<SignalInfo> list(std::string_view glob = "*") const;
     bool has(std::string_view name) const;
-    /// An error includes the nearest known name.
+    /// An error includes the most similar name.
     Result<SignalInfo> find(std::string_view name) const;
     Result<Value> get(std::string_view name) const;
     /// As sets: rejected while the signal has a writer. The value of a port signal is the size of its buffer.

@@ -18,8 +18,8 @@ using namespace detail;
 
 namespace {
 
-/// Index of position `wanted` in [first, first + count]: 1 the first... -1 after the last; -1 when it does
-/// not exist.
+/// Index of position `wanted` in [first, first + count]. Position 1 is the first, -1 is after the last; -1 is
+/// returned when the position does not exist.
 int place_of(int wanted, int first, int count) noexcept {
     const int place = wanted > 0 ? wanted - 1 : count + 1 + wanted;
     return wanted == 0 || place < 0 || place > count ? -1 : first + place;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The HAL threads of an instance and the order of their functions. Invariant: when a method that changes the
-// order returns, no thread runs the old order any more. The methods are not realtime-safe, unless stated
-// otherwise [any non-realtime thread and process]; the threads themselves are (detail/thread_runner.hh).
+// order returns, no thread uses the old order. The methods are not realtime-safe, unless stated otherwise
+// [any non-realtime thread and process]; the threads themselves are (detail/thread_runner.hh).
 #pragma once
 
 #include <cstdint>
@@ -26,11 +26,11 @@ class Instance;
 struct ThreadInfo {
     std::string name;
     std::int64_t period_ns = 0;
-    int owner_id = 0;                         ///< of the pseudo component __NAME
+    int owner_id = 0;                         ///< id of the pseudo component __NAME
     std::vector<std::string> init_functions;  ///< run once
     std::vector<std::string> functions;       ///< in order of execution
-    std::uint64_t overruns = 0;               ///< releases skipped
-    std::int64_t max_latency_ns = 0;          ///< of the wake-up
+    std::uint64_t overruns = 0;               ///< number of skipped releases
+    std::int64_t max_latency_ns = 0;          ///< latency of the wake-up
     std::int64_t time_ns = 0;
     std::int64_t tmax_ns = 0;
 };
@@ -49,11 +49,11 @@ class Threads {
     void remove_all();
     /// Position 1 is the first, -1 the last.
     Result<> add_function(std::string_view function, std::string_view thread, int position = -1);
-    /// The function runs once, in the next period of running threads, before the others.
+    /// The function runs once, in the next period of the running threads, before the other functions.
     Result<> add_init_function(std::string_view function, std::string_view thread, int position = -1);
     Result<> remove_function(std::string_view function, std::string_view thread);
     Result<> start();
-    /// On return no function runs, unless a thread calls it.
+    /// Stops the threads. After it returns no function runs, unless a thread made the call.
     Result<> stop();
     /// [any thread, realtime-safe]
     bool isRunning() const noexcept;
@@ -63,15 +63,15 @@ class Threads {
     void publish_figures();
 
   private:
-    // With the lock held:
+    // The caller of these functions holds the lock:
     void remove_record(detail::ThreadRecord &thread);
     void store_figures() const;
 
     Instance &instance_;
     detail::Segment &segment_;
     runtime::Scheduler *scheduler_;
-    std::unique_ptr<detail::TickCounter> counter_;                ///< times the functions of threads
-    std::vector<std::unique_ptr<detail::ThreadRunner>> runners_;  ///< under the segment's lock
+    std::unique_ptr<detail::TickCounter> counter_;                ///< measures the run times of functions
+    std::vector<std::unique_ptr<detail::ThreadRunner>> runners_;  ///< changed under the segment's lock
 };
 
 }  // namespace mw::hal

@@ -20,7 +20,7 @@ inline std::string pin_name(const char *scope, const char *name, int number) {
     return std::string(first) + '.' + second;
 }
 
-/// The pins of one instance of a table's scope. [the thread that owns the component]
+/// The pins of one instance of the table. [the thread that owns the component]
 template <const auto &TABLE>
 class UserPinSet {
   public:

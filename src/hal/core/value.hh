@@ -11,7 +11,7 @@
 
 namespace mw::hal {
 
-/// Most characters of a name.
+/// Maximum number of characters of a name.
 inline constexpr std::size_t NAME_LENGTH = 127;
 
 /// Numbers as in hal.h (hal_type_t).
@@ -30,7 +30,7 @@ const char *dir_name(Dir dir) noexcept;
 /// One value of one type. Zero is false, 0.0 and 0.
 struct Value {
     Type type = Type::BIT;
-    std::uint64_t bits = 0;  ///< as in HAL memory, little-endian, unused bytes zero
+    std::uint64_t bits = 0;  ///< as in HAL memory: little-endian, unused bytes zero
 
     static Value of_bit(bool v) noexcept;
     static Value of_float(double v) noexcept;

@@ -25,8 +25,8 @@ class Values {
     Result<> set(std::string_view name, std::string_view text);
     /// Sets the value of an IN or IO pin as if its signal had changed; for tests and simulations.
     Result<> force(std::string_view pin_or_signal, const Value &value);
-    /// Current address of the value of a pin, parameter or signal, for programs that read often. That of a
-    /// pin changes when it is linked or unlinked: use the slot for your own pins.
+    /// Current address of the value of a pin, parameter or signal, for programs that read often. The address
+    /// of a pin's value changes when the pin is linked or unlinked; for your own pins use the slot.
     Result<volatile void *> address_of(std::string_view name, Type type);
 
   private:

@@ -47,7 +47,7 @@ constexpr std::array<std::string_view, 37> C_WORDS{
 constexpr std::array<std::string_view, 8> RESERVED{"comp_id",        "fperiod",     "rtapi_app_main",
                                                    "rtapi_app_exit", "extra_setup", "extra_cleanup",
                                                    "post_export",    "period"};
-/// Reserved only in components whose code can use them.
+/// Names that are reserved only in components whose code can use them.
 constexpr std::array<std::string_view, 2> OF_SETUP{"prefix", "extra_arg"};
 
 constexpr std::size_t LONGEST_NAME = 127;  // limit of HAL
@@ -235,7 +235,7 @@ class Checker {
         }
     }
 
-    /// Each function needs its FUNCTION(name), and vice versa.
+    /// Each declared function needs a FUNCTION(name) in the code, and vice versa.
     void check_functions() {
         if (component_.isUserspace() && !component_.functions.empty()) {
             sink_.error("a userspace component has no functions", component_.functions.front().place,

@@ -23,7 +23,7 @@ struct CodeFacts {
     bool has_function_word = false;  ///< FUNCTION occurs outside comments
     bool has_quoted_include = false;
     std::set<std::string, std::less<>> words;  ///< all of them, outside comments and strings
-    std::optional<Use> deep;                   ///< where MOST_NESTED is first exceeded, and by which text
+    std::optional<Use> deep;                   ///< position and text at which MOST_NESTED is first exceeded
     std::vector<Use> functions;                ///< FUNCTION(name) outside comments, strings and directives
 };
 

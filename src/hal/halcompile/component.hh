@@ -17,7 +17,7 @@ enum class Direction { IN, OUT, IO, RO, RW };
 /// [SIZE] or [MAXSIZE : CONDSIZE].
 struct ArraySize {
     std::string size;   ///< a number or a C constant
-    std::string count;  ///< C expression of personality; empty: all elements
+    std::string count;  ///< C expression of the personality; empty: all elements
 };
 
 /// A pin or a parameter.
@@ -28,7 +28,7 @@ struct Item {
     ValueType type = ValueType::BIT;
     std::string name;  ///< as in the file, with dashes, dots and hash marks
     std::optional<ArraySize> array;
-    std::string condition;    ///< C expression of personality; empty: always
+    std::string condition;    ///< C expression of the personality; empty: always present
     std::string start_value;  ///< C expression; empty: 0
     std::string doc;
 };
@@ -85,8 +85,8 @@ struct Component {
     std::optional<Text> description, examples, notes, see_also, license;
     std::vector<Text> authors;
     std::string code;       ///< text after ;;
-    int code_line = 1;      ///< where it starts
-    bool has_code = false;  ///< there was a ;;
+    int code_line = 1;      ///< line of the file where the code starts
+    bool has_code = false;  ///< the file has a ;;
 
     const Option *option(std::string_view name) const;
     /// The value of a yes/no option.

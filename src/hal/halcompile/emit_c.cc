@@ -357,7 +357,7 @@ class Emitter {
         }
     }
 
-    /// NAME_set(value) or NAME_set(index, value), unless the component has another object with that name.
+    /// NAME_set(value) or NAME_set(index, value), unless another object of the component has that name.
     void item_setter(const std::string &name, bool is_array) {
         const std::string setter = name + "_set";
         for (const Item &other : component_.items) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Writes the C source of a component. The framework comes first, then the macros for pins, parameters and
-// variables, then the component's own code, so that no name of a pin can change the framework.
+// Writes the C source of a component. Order: framework, macros for pins, parameters and variables, then the
+// component's own code. So no pin name can change the framework.
 #pragma once
 
 #include <string>

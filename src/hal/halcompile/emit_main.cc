@@ -30,7 +30,7 @@ std::string c_type(const ModuleParameter &parameter) {
     return parameter.type == "u32" ? "unsigned " : parameter.type == "s32" ? "int " : parameter.type + " ";
 }
 
-/// The declaration of a modparam.
+/// Returns the declaration of a modparam.
 std::string declare(const ModuleParameter &parameter, bool userspace) {
     std::string value = isText(parameter) && !parameter.start_value.empty() ? c_string(parameter.start_value)
                                                                             : parameter.start_value;
@@ -95,7 +95,7 @@ std::string emit_module_parameters(const Component &component, int personalities
 
 namespace {
 
-/// Creates the instances; r has the status.
+/// C code that creates the instances; the variable r has the status.
 std::string make_instances(const Component &component, const std::string &prefix) {
     const char *personality = component.hasPersonality() ? ", __comp_personality_of(i)" : "";
     if (component.isOn("singleton")) {
@@ -271,7 +271,7 @@ std::string emit_main(const Component &component) {
                   "    for (i = 1; i < kept; i++) fprintf(stderr, \"{}: '%s' means nothing here\\n\", "
                   "argv[i]);\n",
                   component.name);
-    // Before any code of the program runs.
+    // Checked before any code of the program runs.
     const std::string refusal =
         isCounted(component)
             ? fmt::format(

@@ -242,7 +242,7 @@ class Parser {
         return text;
     }
 
-    /// "if CONDITION", "= VALUE" and the text, each if it is there.
+    /// Reads "if CONDITION", "= VALUE" and the text, each optional.
     Result<> item_tail(Item &item) {
         if (scanner_.isWord("if")) {
             scanner_.accept("if");

@@ -72,7 +72,7 @@ class Job {
         return done.has_value();
     }
 
-    /// Writes a product; for an installation prints its path, which is not on the command line.
+    /// Writes an output file; for an installation prints its path, which is not on the command line.
     Result<> put(const std::string &from, const std::string &to, unsigned mode) const {
         auto done = install_file(from, to, mode);
         if (done && (options_.mode == Mode::INSTALL || options_.mode == Mode::INSTALL_DOC)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The program halcompile: its options and what it does with each file.
+// The program halcompile: its options and the processing of each file.
 #pragma once
 
 #include <string>

@@ -27,12 +27,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Symbols that the loader and the motion module use; exported with or without EXPORT_SYMBOL.
+/// Symbols that the loader and the motion module search; exported with or without EXPORT_SYMBOL.
 constexpr std::array<const char *, 8> ENTRY_POINTS{
     "rtapi_app_main", "rtapi_app_exit", "kinematicsForward",    "kinematicsInverse",
     "kinematicsHome", "kinematicsType", "kinematicsSwitchable", "kinematicsSwitch"};
 
-/// Functions that a realtime function must not call; code that runs at loading may.
+/// Functions that a realtime function must not call; code that runs while loading may call them.
 constexpr std::array<const char *, 33> SLOW_CALLS{"malloc",  "calloc",  "realloc",
                                                   "free",    "printf",  "puts",
                                                   "fprintf", "vprintf", "putchar",
@@ -126,7 +126,7 @@ std::vector<std::string> link_words(const Places &places, const BuildOrder &orde
     return words;
 }
 
-/// Exports only the symbols that are intended for others.
+/// Exports only the symbols that other modules may use.
 Result<> write_export_list(const ObjectFacts &facts, const std::string &path) {
     std::string text = "{\n  global:\n";
     for (const char *name : ENTRY_POINTS) {

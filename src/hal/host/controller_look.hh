@@ -8,15 +8,15 @@
 
 namespace mw::hal {
 
-/// One thread.
+/// The check of one thread.
 class ControllerLook {
   public:
     /// Counts a check for modules that use it (mw_ext_count_looks). When the process `pid` hangs and its
-    /// machine is off, switches off coolant and its other outputs. 0: there is none.
+    /// machine is off, switches off coolant and its other outputs. 0: there is no controlling process.
     void step(Instance &hal, std::int32_t pid);
 
   private:
-    /// Uses the priority of the controlling process, so that both are delayed by the same load.
+    /// Takes the priority of the controlling process, so that load delays both equally.
     void take_priority_of(std::int32_t pid);
 
     int policy_ = 0;  ///< scheduling policy of the process; SCHED_OTHER

@@ -69,8 +69,8 @@ std::string server_program() {
     if (messages >= 0) {
         ::dup2(messages, STDERR_FILENO);
     }
-    // rtapi_print writes to the starter's standard output. A server that outlives it must not keep its pipe
-    // open.
+    // rtapi_print writes to the starter's standard output. A server that outlives the starter must not keep
+    // the starter's pipe open.
     if (messages >= 0 || starter < 0) {
         ::dup2(STDERR_FILENO, STDOUT_FILENO);
     }
@@ -106,7 +106,7 @@ struct HostClient::Impl {
     std::string instance;
     int fd = -1;
     int pid = 0;
-    int process = -1;  ///< pidfd of the process
+    int process = -1;  ///< pidfd of the realtime process
     std::unique_ptr<Instance> hal;
 
     ~Impl() {
@@ -168,7 +168,7 @@ Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instanc
                               O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
         }
     }
-    // With this the kernel reports the end of the starter at any time.
+    // With this descriptor the kernel reports the end of the starter at any time.
     const int starter =
         lifetime == Lifetime::STARTER ? static_cast<int>(::syscall(SYS_pidfd_open, ::getpid(), 0)) : -1;
     // Everything is prepared before the fork: the child of a process with threads may not allocate memory.
@@ -217,7 +217,7 @@ Result<std::vector<std::string>> HostClient::ask(const std::vector<std::string> 
     auto answer = isSent(impl_->fd, request) ? receive(impl_->fd)
                                              : Result<std::vector<std::string>>(fail("it does not listen"));
     if (!answer) {
-        // Its socket closes shortly before the process ends.
+        // The server closes its socket shortly before its process ends.
         static_cast<void>(impl_->hasEnded(CLOSING_MS));
         errno = EPIPE;
         const auto end = impl_->hal == nullptr ? std::nullopt : death();
@@ -275,7 +275,7 @@ Result<> HostClient::control() {
 
 Result<> HostClient::shut_down() {
     if (!impl_->hasEnded(0)) {
-        // It may end by itself meanwhile, with the same effect.
+        // The server may end by itself meanwhile, with the same effect.
         static_cast<void>(ask({"end"}));
     }
     if (!impl_->hasEnded(END_TIMEOUT_MS)) {

@@ -44,8 +44,8 @@ class HostClient final : public Host {
     Result<> control();
     /// Requests the realtime process to stop everything and end, and waits until it has.
     Result<> shut_down();
-    /// Error with the reason when the realtime process has ended; nothing while it runs. From the kernel, so
-    /// it is fast and immediate. [any thread]
+    /// Error with the reason when the realtime process has ended; nothing while it runs. The kernel reports
+    /// the end immediately. [any thread]
     std::optional<Error> death() const;
     /// Process id of the realtime process.
     int pid() const noexcept;
@@ -60,7 +60,7 @@ class HostClient final : public Host {
 /// True when a realtime process of this instance is running.
 bool isHostAlive(const std::string &instance);
 
-/// Removes files of a dead realtime process of this instance; no effect while one is running.
+/// Removes files that a dead realtime process of this instance has left; no effect while a process runs.
 void remove_leftovers(const std::string &instance);
 
 }  // namespace mw::hal

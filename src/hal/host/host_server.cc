@@ -29,7 +29,8 @@
 namespace mw::hal {
 namespace {
 
-/// Interval of the search for processes with components. Afterwards the kernel reports their end.
+/// Interval of the search for processes with components. The kernel reports the end of processes that were
+/// found.
 constexpr int LOOK_MS = 50;
 constexpr int ENDING_MS = 10;
 constexpr std::int64_t LONGEST_BRAKING_NS = 10'000'000'000;
@@ -62,7 +63,7 @@ struct HostServer::Impl {
     std::string instance;
     std::string path;
     int lock = -1, listener = -1, signals = -1;
-    int controller = -1;  ///< its pidfd
+    int controller = -1;  ///< pidfd of the controlling process
     ControllerLook controller_look;
     int controller_socket = -1;
     bool ending = false;
@@ -120,7 +121,7 @@ Result<> HostServer::Impl::listen() {
         return fail("the path of the socket is too long: " + path);
     }
     std::memcpy(address.sun_path, path.data(), path.size());
-    // We hold the lock, so an existing file belongs to a dead process.
+    // This process holds the lock, so an existing file belongs to a dead process.
     ::unlink(path.c_str());
     listener = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     const bool is_bound =
@@ -349,8 +350,8 @@ bool HostServer::Impl::isSafeToEnd() {
 }
 
 /// Outputs of dead processes take their safe values, and the threads run long enough to pass them to the
-/// hardware. Only after the machine has stopped: an enable chain through the dead process would interrupt the
-/// braking.
+/// hardware. This happens only after the machine has stopped, because an enable chain through the dead
+/// process would interrupt the braking.
 void HostServer::Impl::take_safe_values() {
     host->hal().processes().spare(0);
     reap();
@@ -416,7 +417,7 @@ HostServer::~HostServer() {
 
 /// Serves the clients with events in `watched`.
 void HostServer::Impl::serve(const std::vector<pollfd> &fds) {
-    // The controlling process first: its end is most urgent.
+    // The controlling process is checked first, because its end is most urgent.
     if (fds[1].revents != 0) {
         on_controller_gone();
     }
@@ -445,7 +446,7 @@ void HostServer::Impl::serve(const std::vector<pollfd> &fds) {
     }
 }
 
-/// Checks again: a process that controls and has components may have died between the checks of its two
+/// Checks again: a controlling process with components may have died between the checks of its two
 /// descriptors.
 bool HostServer::Impl::isControllerGone() {
     pollfd look{controller, POLLIN, 0};

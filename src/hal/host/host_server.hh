@@ -16,7 +16,7 @@ struct HostServerOptions {
     /// Receiver of modules' messages; standard error when null.
     runtime::Log::Sink sink = nullptr;
     void *sink_context = nullptr;
-    /// pidfd of the process that controls this one from the start; -1: none yet.
+    /// pidfd of the process that controls this one from the start; -1: none
     int controller_fd = -1;
 };
 

@@ -131,7 +131,7 @@ struct flock whole_file() {
     return whole;
 }
 
-/// True when `path` still refers to the file open as `fd`: its last holder may have removed it.
+/// True when `path` still refers to the file open as `fd`: its last owner may have removed it.
 bool isSameFile(int fd, const std::string &path) {
     struct stat opened{};
     struct stat named{};
@@ -152,7 +152,7 @@ Result<int> take_lock(const std::string &instance) {
         if (fd < 0) {
             return fail("cannot open " + *path + ": " + std::strerror(errno));
         }
-        // Belongs to the open file: released when the process ends for any reason.
+        // The lock belongs to the open file, so it is released when the process ends for any reason.
         struct flock whole = whole_file();
         if (::fcntl(fd, F_OFD_SETLK, &whole) != 0) {
             ::close(fd);

@@ -6,7 +6,7 @@
 
 namespace mw::hal {
 
-/// Id of the process of a pidfd; 0: none.
+/// Id of the process of a pidfd; 0 if there is none.
 std::int32_t pid_of(int fd);
 
 }  // namespace mw::hal

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* A part of hal.h: what is in the instance, and values by name. Nothing here is realtime-safe. */
+/* A part of hal.h: queries of the objects in the instance, and values by name. No function here is
+ * realtime-safe. */
 #ifndef HAL_QUERY_H
 #define HAL_QUERY_H
 
@@ -7,10 +8,10 @@
 
 RTAPI_BEGIN_DECLS
 
-/* ---- queries: what is in the instance, and values by name ----
- * A query says what is looked for and receives what was found. `qtype` and `name` select: ANY, or NULL, is
- * everything; a name of the list functions may be a pattern with * ? [abc]. Texts in a query stay valid until
- * the next query of this thread. Callbacks run without any lock held: they may call anything. */
+/* ---- queries: the objects in the instance, and values by name ----
+ * A query contains the criteria and receives the result. `qtype` and `name` select objects; ANY or NULL
+ * selects all. For the list functions `name` may be a pattern with * ? [abc]. Texts in a query are valid
+ * until the next query of this thread. Callbacks run without a lock and may call any function. */
 typedef enum {
     HAL_QTYPE_ANY = 0,
     HAL_QTYPE_COMP,
@@ -22,7 +23,7 @@ typedef enum {
     HAL_QTYPE_THREAD_FUNCT
 } hal_qtype_t;
 
-/* A value; the member is the one of its type. */
+/* A value. The type selects the member. */
 typedef union {
     rtapi_bool b;  /* HAL_BIT */
     rtapi_real r;  /* HAL_FLOAT */
@@ -34,15 +35,15 @@ typedef union {
 } hal_query_value_u;
 
 typedef struct {
-    const char *name;  /* the alias where there is one */
-    const char *alias; /* NULL without one */
+    const char *name;  /* the alias if there is one, else the name */
+    const char *alias; /* NULL if there is no alias */
     hal_type_t type;
     hal_pdir_t dir;
     int comp_id;
     const char *comp;   /* the owner's name */
-    const char *signal; /* of a linked pin, else NULL */
+    const char *signal; /* signal of a linked pin, else NULL */
     hal_query_value_u value;
-    rtapi_intptr_t ref; /* by hal_getref_p: for hal_reference_map */
+    rtapi_intptr_t ref; /* set by hal_getref_p, for hal_reference_map */
 } hal_query_pp_t;
 
 typedef struct {
@@ -50,7 +51,7 @@ typedef struct {
     hal_type_t type;
     int readers, writers, bidirs;
     hal_query_value_u value;
-    rtapi_intptr_t ref; /* by hal_getref_s */
+    rtapi_intptr_t ref; /* set by hal_getref_s */
 } hal_query_sig_t;
 
 typedef struct {
@@ -59,14 +60,14 @@ typedef struct {
     hal_comp_type_t type;
     int pid;
     int ready;
-    const char *insmod; /* the words of loadrt, or NULL */
+    const char *insmod; /* the parameters from loadrt, or NULL */
 } hal_query_comp_t;
 
 typedef struct {
     const char *name;
     int comp_id;
     const char *comp;
-    int users; /* places in threads */
+    int users; /* number of uses in threads */
     int reentrant;
 } hal_query_funct_t;
 
@@ -75,9 +76,9 @@ typedef struct {
     int comp_id;
     long period_nsec;
     long time_nsec, tmax_nsec;
-    const char *funct; /* with HAL_QTYPE_THREAD_FUNCT: one call for each function, in order */
-    int position;      /* of that function, from 1 */
-    int is_init;       /* it runs once */
+    const char *funct; /* with HAL_QTYPE_THREAD_FUNCT: one call for each function, in order of execution */
+    int position;      /* position of that function, from 1 */
+    int is_init;       /* 1 if the function runs only once */
 } hal_query_thread_t;
 
 typedef struct {
@@ -92,15 +93,16 @@ typedef struct {
     };
 } hal_query_t;
 
-/* Called with each thing found; other than 0 ends the list and is what the list function answers. */
+/* Called for each object found. A return value other than 0 ends the list and becomes the result of the list
+ * function. */
 typedef int (*hal_query_cb)(hal_query_t *query, void *arg);
 
-/* One component by its id or name: 0, or -ENOENT. */
+/* Finds one component by its id or name. Returns 0, or -ENOENT. */
 extern int hal_comp_by_id(int comp_id, hal_query_t *q);
 extern int hal_comp_by_name(const char *name, hal_query_t *q);
-/* Lists, sorted by name (threads: fastest first). q may be NULL: everything. hal_list_p: pins and parameters,
- * either kind alone with its qtype. hal_list_p_s: the pins of the signal q->name. hal_list_thread with
- * HAL_QTYPE_THREAD_FUNCT: the functions of each thread. */
+/* Lists, sorted by name (threads: shortest period first). q may be NULL for all objects. hal_list_p: pins and
+ * parameters, or only one of them by qtype. hal_list_p_s: the pins of the signal q->name. hal_list_thread
+ * with HAL_QTYPE_THREAD_FUNCT: the functions of each thread. */
 extern int hal_list_comp(hal_query_t *q, hal_query_cb cb, void *arg);
 extern int hal_list_p(hal_query_t *q, hal_query_cb cb, void *arg);
 extern int hal_list_s(hal_query_t *q, hal_query_cb cb, void *arg);
@@ -108,21 +110,20 @@ extern int hal_list_p_s(hal_query_t *q, hal_query_cb cb, void *arg);
 extern int hal_list_funct(hal_query_t *q, hal_query_cb cb, void *arg);
 extern int hal_list_thread(hal_query_t *q, hal_query_cb cb, void *arg);
 
-/* Looks up a pin or parameter (a signal) by query->name and fills the query in; then calls cb, if given,
- * whose answer is the result. -ENOENT when there is none. */
+/* Finds a pin or parameter (a signal) by query->name and fills the query. Then calls cb, if not NULL, and
+ * returns its result. -ENOENT when there is no such object. */
 extern int hal_get_p(hal_query_t *query, hal_query_cb cb, void *arg);
 extern int hal_get_s(hal_query_t *query, hal_query_cb cb, void *arg);
-/* Sets it to query->pp.value (query->sig.value). A cb is called first with what is there now and puts the new
- * value in; when it answers other than 0, nothing is set and that is the result. Errors are those of setp and
- * sets.
- */
+/* Sets the object to query->pp.value (query->sig.value). If cb is not NULL, it is called first with the
+ * current value and stores the new value in the query. If cb returns other than 0, nothing is set and this is
+ * the result. Errors are as for setp and sets. */
 extern int hal_set_p(hal_query_t *query, hal_query_cb cb, void *arg);
 extern int hal_set_s(hal_query_t *query, hal_query_cb cb, void *arg);
-/* As hal_get_p and hal_get_s, and gives in `ref` where the value lies now. A pin's place moves when it is
- * linked or unlinked. */
+/* As hal_get_p and hal_get_s, and stores in `ref` the current position of the value. Linking or unlinking a
+ * pin changes the position of its value. */
 extern int hal_getref_p(hal_query_t *query);
 extern int hal_getref_s(hal_query_t *query);
-/* The address of a reference in this process, or NULL; it stays valid as long as the instance is joined. */
+/* The address of a reference in this process, or NULL. It is valid while the instance is joined. */
 extern void *hal_reference_map(rtapi_intptr_t ref);
 extern int hal_reference_unmap(const void *ref);
 

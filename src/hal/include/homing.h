@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* Functions that a homing module exports. docs/developer/extending/homing.md describes what it may assume and
- * how motion treats its requests. Positions are in joint units, speeds in joint units per second. */
+/* Functions that a homing module exports. docs/developer/extending/homing.md describes the assumptions that
+ * it may make and how motion treats its requests. Positions are in joint units, speeds in joint units per
+ * second. */
 #ifndef HOMING_H
 #define HOMING_H
 
@@ -29,16 +30,16 @@ typedef enum {
 
 /* The joint planner of a joint: a trapezoidal move to pos_cmd. */
 typedef struct {
-    double pos_cmd; /* where to go */
-    double max_vel; /* at most */
+    double pos_cmd; /* target position */
+    double max_vel; /* maximum velocity */
     double max_acc;
-    int enable; /* 1: moving there, 0: stopping */
+    int enable; /* 1: move to pos_cmd, 0: stop */
     double curr_pos;
     double curr_vel;
-    int active; /* 1 while it moves */
+    int active; /* 1 while the joint moves */
 } simple_tp_t;
 
-/* A joint, as motion and homing share it. */
+/* A joint, as shared by motion and homing. */
 typedef struct {
     int flag;
     double pos_cmd, vel_cmd;
@@ -53,17 +54,17 @@ typedef struct {
 } emcmot_joint_t;
 
 RTAPI_EXPORT extern void homeMotFunctions(void (*pSetRotaryUnlock)(int, int), int (*pGetRotaryUnlock)(int));
-/* 0, or nonzero when the module cannot be used. Makes the module's pins with component `id`. */
+/* Creates the module's pins with component `id`. Returns 0, or nonzero when the module cannot be used. */
 RTAPI_EXPORT extern int homing_init(int id, double servo_period, int n_joints, int n_extrajoints,
                                     emcmot_joint_t *pjoints);
 RTAPI_EXPORT extern void read_homing_in_pins(int njoints);
 RTAPI_EXPORT extern void write_homing_out_pins(int njoints);
-/* jno -1: all, by their sequences. */
+/* jno -1: all joints, by their sequences. */
 RTAPI_EXPORT extern void do_home_joint(int jno);
 RTAPI_EXPORT extern void do_cancel_homing(int jno);
-/* One cycle; true in the cycle in which the last joint became homed. */
+/* Runs one cycle; true in the cycle in which the last joint became homed. */
 RTAPI_EXPORT extern bool do_homing(void);
-/* jno -1: all; -2: those with volatile_home. */
+/* jno -1: all joints; -2: joints with volatile_home. */
 RTAPI_EXPORT extern void set_unhomed(int jno, motion_state_t motstate);
 RTAPI_EXPORT extern void set_joint_homing_params(int jno, double offset, double home, double home_final_vel,
                                                  double home_search_vel, double home_latch_vel,

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
 /* Values from an INI file. Link with -llinuxcncini or -lmillwright_ini.
  *
- * The file is a stream that is open for reading, or a name: iniFindInt("mill.ini", ...). Included files count
- * only where a name is given.
+ * The file is a stream that is open for reading, or a name: iniFindInt("mill.ini", ...). Included files are
+ * read only if the file is passed by name.
  *
- * iniFind answers the value as a text, valid until the thread's next call, or NULL. The others answer 0,
- * -ENOENT when there is no such key or file, -EINVAL when the value is not of the type or out of its range,
- * and leave *result alone then. `section` may be NULL for any section. Not realtime-safe. */
+ * iniFind returns the value as a text, valid until the thread's next call, or NULL. The other functions
+ * return 0, -ENOENT when there is no such key or file, or -EINVAL when the value has another type or is out
+ * of its range; *result is then unchanged. `section` may be NULL for any section. Not realtime-safe. */
 #ifndef INIFILE_H
 #define INIFILE_H
 
@@ -31,7 +31,7 @@ extern int iniFindBool(FILE *fp, const char *tag, const char *section, bool *res
 /* -ENOSPC when dest, of n bytes, is too small. */
 extern int iniFindString(FILE *fp, const char *tag, const char *section, char *dest, size_t n);
 
-/* The same by the name of the file; the names above choose them. */
+/* The same functions with the name of the file. The names above select them for a text argument. */
 extern const char *iniFindIn(const char *file, const char *tag, const char *section);
 extern int iniFindIntIn(const char *file, const char *tag, const char *section, int *result);
 extern int iniFindSIntIn(const char *file, const char *tag, const char *section, rtapi_sint *result);

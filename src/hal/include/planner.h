@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* What a trajectory planner module of a user exports ([TRAJ]TPMOD); docs/developer/extending/planner.md. */
+/* Functions that a user's trajectory planner module exports ([TRAJ]TPMOD); see
+ * docs/developer/extending/planner.md. */
 #ifndef MILLWRIGHT_PLANNER_H
 #define MILLWRIGHT_PLANNER_H
 
@@ -7,33 +8,34 @@
 
 RTAPI_BEGIN_DECLS
 
-/* What is left of a stretch of the path, and what the machine can do on it. Lengths in machine units (degrees
- * where only axes of rotation move), speeds per second. */
+/* The remaining part of a section of the path, and the limits of the machine on it. Lengths in machine units
+ * (degrees if only rotary axes move), speeds per second. */
 typedef struct mw_tp_stretch {
-    double length;    /* from here to its end, above 0 */
-    double speed;     /* here */
-    double speed_cap; /* the highest on it: feed, overrides and limits are in it; `speed` is not above */
-    double speed_out; /* the highest at its end: all that follows can be kept, stops included */
-    /* The highest acceleration, up and down, at rest and at speed_cap; between them at least what a straight
-     * line over the square of the speed gives. */
+    double length;    /* remaining length, above 0 */
+    double speed;     /* current speed */
+    double speed_cap; /* maximum speed: includes feed, overrides and limits; `speed` does not exceed it */
+    double speed_out; /* maximum speed at the end, so that the following path stays within its limits */
+    /* Maximum acceleration and deceleration at standstill and at speed_cap. In between it is at least a
+     * linear function of the square of the speed. */
     double acceleration_at_rest;
     double acceleration_at_cap;
-    int line;   /* of the program */
-    int is_end; /* nothing is known behind it */
+    int line;   /* line of the program */
+    int is_end; /* 1 if the following path is not known */
 } mw_tp_stretch;
 
-/* Over `length` to `speed`, with constant acceleration. */
+/* A phase ends after `length` at `speed`, with constant acceleration. */
 typedef struct mw_tp_phase {
     double length, speed;
 } mw_tp_phase;
 
 #define MW_TP_PHASES 8
 
-/* Once, while motmod is loaded: it may make pins for comp_id and allocate. 0, or negative: motmod is refused.
- */
+/* Called once while motmod is loaded; may create pins for comp_id and allocate memory. Returns 0; with a
+ * negative result motmod is not loaded. */
 RTAPI_EXPORT extern int mw_tp_init(int comp_id, double servo_period_s);
-/* How the stretch is driven: up to MW_TP_PHASES phases, one behind the other, whose lengths make up that of
- * the stretch. Their number. In the planner's thread: no allocation, no lock, no loop without a bound. */
+/* Calculates the motion on the section: up to MW_TP_PHASES consecutive phases whose lengths add up to the
+ * length of the section. Returns their number. Runs in the planner's thread: no allocation, no lock, no loop
+ * without a bound. */
 RTAPI_EXPORT extern int mw_tp_plan(const mw_tp_stretch *stretch, mw_tp_phase *phases);
 
 RTAPI_END_DECLS

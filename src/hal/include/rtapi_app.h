@@ -7,12 +7,13 @@
 
 RTAPI_BEGIN_DECLS
 
-/* Called once after loading, with the module parameters set: 0 when ready, a negated errno to refuse. */
+/* Called once after loading, with the module parameters set. Returns 0 when ready; a negated errno rejects
+ * the load. */
 RTAPI_EXPORT extern int rtapi_app_main(void);
-/* Called before unloading, with no function of the module running. */
+/* Called before unloading, while no function of the module runs. */
 RTAPI_EXPORT extern void rtapi_app_exit(void);
 
-/* Build lines of modules with several files take the exported names from the objects. */
+/* For modules with several files the exported names are read from the objects. */
 EXPORT_SYMBOL(rtapi_app_main)
 EXPORT_SYMBOL(rtapi_app_exit)
 

@@ -15,8 +15,8 @@ struct rtapi_firmware {
     const rtapi_u8 *data;
 };
 
-/* Reads a file below /lib/firmware ($MILLWRIGHT_FIRMWARE: folders, colon separated, looked at first). 0, or a
- * negated errno with a message. Release what was requested. For set-up code only. */
+/* Reads a file below /lib/firmware. Folders in $MILLWRIGHT_FIRMWARE (colon separated) are searched first.
+ * Returns 0, or a negated errno with a message. The caller releases the firmware. For set-up code only. */
 extern int rtapi_request_firmware(const struct rtapi_firmware **fw, const char *name,
                                   struct rtapi_device *device);
 extern void rtapi_release_firmware(const struct rtapi_firmware *fw);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* Kinds of memory that a caller may ask for; all are the same here. */
+/* Types of memory that a caller can request; all have the same effect here. */
 #ifndef RTAPI_GFP_H
 #define RTAPI_GFP_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* Circular doubly linked lists whose links are members of the elements. An empty list's head points at
+/* Circular doubly linked lists whose links are members of the elements. The head of an empty list points to
  * itself. */
 #ifndef RTAPI_LIST_H
 #define RTAPI_LIST_H
@@ -16,7 +16,7 @@ static inline void RTAPI_INIT_LIST_HEAD(struct rtapi_list_head *list) {
     list->next = list;
 }
 
-/* Puts new_ between two neighbours. */
+/* Inserts new_ between two neighbours. */
 static inline void rtapi__list_add(struct rtapi_list_head *new_, struct rtapi_list_head *prev,
                                    struct rtapi_list_head *next) {
     new_->prev = prev;
@@ -25,7 +25,7 @@ static inline void rtapi__list_add(struct rtapi_list_head *new_, struct rtapi_li
     next->prev = new_;
 }
 
-/* Makes two elements neighbours, which drops what was between them. */
+/* Links two elements, which removes the elements between them. */
 static inline void rtapi__list_del(struct rtapi_list_head *prev, struct rtapi_list_head *next) {
     prev->next = next;
     next->prev = prev;
@@ -39,7 +39,7 @@ static inline void rtapi_list_add_tail(struct rtapi_list_head *new_, struct rtap
     rtapi__list_add(new_, head->prev, head);
 }
 
-/* The element's own links are cleared, so that a second removal faults instead of corrupting. */
+/* Clears the element's own links, so that a second removal faults instead of corrupting the list. */
 static inline void rtapi_list_del(struct rtapi_list_head *entry) {
     rtapi__list_del(entry->prev, entry->next);
     entry->next = NULL;

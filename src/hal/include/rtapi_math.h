@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* The C mathematics library, all of it allowed in realtime functions. */
+/* The C mathematics library; realtime functions may call all of it. */
 #ifndef RTAPI_MATH_H
 #define RTAPI_MATH_H
 
 #include <math.h>
 
-/* Some libraries leave the constants out of their strict modes. */
+/* Some libraries omit the constants in their strict modes. */
 #ifndef M_PI
 #define M_PI 3.14159265358979323846
 #endif

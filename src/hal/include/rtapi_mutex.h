@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* A one-word lock in memory that processes share. Realtime functions may only try, never wait. */
+/* A one-word lock in memory shared by processes. Realtime functions may only try to take it, never wait. */
 #ifndef RTAPI_MUTEX_H
 #define RTAPI_MUTEX_H
 
@@ -16,7 +16,7 @@ static inline void rtapi_mutex_give(unsigned long *mutex) {
     __atomic_store_n(mutex, 0UL, __ATOMIC_RELEASE);
 }
 
-/* Takes the lock if it is free. Answers 0 when taken, 1 when another holds it. Realtime-safe. */
+/* Takes the lock if it is free. Returns 0 when taken, 1 when another owner holds it. Realtime-safe. */
 static inline int rtapi_mutex_try(unsigned long *mutex) {
     unsigned long free_word = 0UL;
     return !__atomic_compare_exchange_n(mutex, &free_word, 1UL, 0, __ATOMIC_ACQUIRE, __ATOMIC_RELAXED);
@@ -29,13 +29,13 @@ static inline void rtapi_mutex_get(unsigned long *mutex) {
     }
 }
 
-/* The same word as a lock for many readers or one writer: the functions above write, these read. Bit 0 is the
- * writer's, each reader counts 2. */
+/* The same word as a lock for many readers or one writer: the functions above are for the writer, these for
+ * readers. Bit 0 is the writer; each reader adds 2. */
 static inline void rtapi_mutex_give_rd(unsigned long *mutex) {
     __atomic_fetch_sub(mutex, 2UL, __ATOMIC_RELEASE);
 }
 
-/* 0 when taken, 1 when a writer holds it. Realtime-safe. */
+/* Returns 0 when taken, 1 when a writer holds the lock. Realtime-safe. */
 static inline int rtapi_mutex_try_rd(unsigned long *mutex) {
     unsigned long seen = __atomic_load_n(mutex, __ATOMIC_RELAXED);
     while ((seen & 1UL) == 0UL) {

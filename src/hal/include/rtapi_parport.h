@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* PC-style parallel ports. Registers are read and written by rtapi_inb and rtapi_outb, whose notes apply. */
+/* PC-style parallel ports. Registers are accessed by rtapi_inb and rtapi_outb; their requirements apply. */
 #ifndef RTAPI_PARPORT_H
 #define RTAPI_PARPORT_H
 
@@ -16,9 +16,9 @@ typedef struct rtapi_parport_t {
     void *dev;
 } rtapi_parport_t;
 
-/* Claims a port: base below 16 is the number of a port that Linux knows, else its address. base_hi is 0 to
- * look for the ECP registers, 0xffff for none. modes as in <linux/parport.h>: a warning when Linux knows that
- * the port has not got them. 0, or a negated errno with a message. For set-up code. */
+/* Claims a port. base below 16 is the number of a port known to Linux, else the address. base_hi 0 searches
+ * for the ECP registers, 0xffff means none. modes are as in <linux/parport.h>; a warning is logged when Linux
+ * reports that the port does not have them. Returns 0, or a negated errno with a message. For set-up code. */
 extern int rtapi_parport_get(const char *mod_name, rtapi_parport_t *port, unsigned short base,
                              unsigned short base_hi, unsigned int modes);
 extern void rtapi_parport_release(rtapi_parport_t *port);
@@ -63,7 +63,7 @@ static inline void rtapi_parport_epp_data_writeb(rtapi_parport_t *t, unsigned ch
 static inline void rtapi_parport_epp_data_writel(rtapi_parport_t *t, unsigned long v) {
     rtapi_outl((unsigned int)v, RTAPI_PARPORT_EPP_DATA_PORT(t));
 }
-/* Without ECP registers they read 0 and writes do nothing. */
+/* Without ECP registers reads return 0 and writes have no effect. */
 static inline unsigned char rtapi_parport_ecr_read(rtapi_parport_t *t) {
     return t->base_hi == 0 ? 0 : rtapi_inb(RTAPI_PARPORT_ECR_PORT(t));
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* PCI cards, by way of /sys/bus/pci. The process must be allowed to write there (root, or rules for the
- * card). For set-up code; the mapped registers are for realtime functions. */
+/* PCI cards, accessed through /sys/bus/pci. The process must have write access (root, or rules for the card).
+ * For set-up code; the mapped registers are for realtime functions. */
 #ifndef RTAPI_PCI_H
 #define RTAPI_PCI_H
 
@@ -14,7 +14,7 @@ extern "C" {
 #define RTAPI_PCI_ANY_ID 0xffffffffU
 #define RTAPI_PCI_BARS 6
 
-/* Which cards a driver wants; a table ends with an entry of zeros. */
+/* Cards that a driver supports; a table ends with an entry of zeros. */
 struct rtapi_pci_device_id {
     rtapi_u32 vendor, device;
     rtapi_u32 subvendor, subdevice;
@@ -27,7 +27,7 @@ struct rtapi_pci_device_id {
 };
 
 struct rtapi_pci_resource {
-    rtapi_u64 start, end; /* both 0 when there is none */
+    rtapi_u64 start, end; /* both 0 if there is none */
     unsigned long flags;  /* bit 8: ports, bit 9: memory */
     void *mapped;
     rtapi_u64 mapped_size;
@@ -49,25 +49,25 @@ struct rtapi_pci_dev {
 struct rtapi_pci_driver {
     const char *name;
     const struct rtapi_pci_device_id *id_table;
-    /* 0 takes the card. */
+    /* Returns 0 to claim the card. */
     int (*probe)(struct rtapi_pci_dev *dev, const struct rtapi_pci_device_id *id);
     void (*remove)(struct rtapi_pci_dev *dev);
-    struct rtapi_pci_dev *devices; /* taken */
+    struct rtapi_pci_dev *devices; /* claimed cards */
 };
 
 /* NOLINTNEXTLINE(bugprone-reserved-identifier): existing code names it so */
 #define rtapi__iomem volatile
 
 extern const char *rtapi_pci_name(const struct rtapi_pci_dev *pdev);
-/* Calls probe for every card of the machine that the table names. 0 (no card is no error), or a negated
- * errno. */
+/* Calls probe for every card in the computer that matches the table. Returns 0 (also without a card), or a
+ * negated errno. */
 extern int rtapi_pci_register_driver(struct rtapi_pci_driver *driver);
-/* Calls remove for the cards that it took, and lets them go. */
+/* Calls remove for the claimed cards, and releases them. */
 extern void rtapi_pci_unregister_driver(struct rtapi_pci_driver *driver);
-/* 0, or a negated errno with a message. */
+/* Returns 0, or a negated errno with a message. */
 extern int rtapi_pci_enable_device(struct rtapi_pci_dev *dev);
 extern int rtapi_pci_disable_device(struct rtapi_pci_dev *dev);
-/* Maps a card's registers, or NULL with a message. */
+/* Maps a card's registers. Returns NULL with a message on failure. */
 extern void rtapi__iomem *rtapi_pci_ioremap_bar(struct rtapi_pci_dev *pdev, int bar);
 extern void rtapi_iounmap(volatile void *addr);
 extern void rtapi_pci_set_drvdata(struct rtapi_pci_dev *pdev, void *data);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* Memory of the process (not of HAL). For set-up code only, never in realtime functions. */
+/* Memory of the process (not of HAL). Only for set-up code, not for realtime functions. */
 #ifndef RTAPI_SLAB_H
 #define RTAPI_SLAB_H
 

@@ -17,7 +17,7 @@ typedef uint64_t rtapi_u64;
 typedef intptr_t rtapi_intptr_t;
 typedef uintptr_t rtapi_uintptr_t;
 
-/* The widths that HAL stores a value in. */
+/* The widths in which HAL stores values. */
 typedef bool rtapi_bool;
 typedef double rtapi_real;
 typedef int64_t rtapi_sint;

@@ -12,14 +12,14 @@
 extern "C" {
 #endif
 
-/* Copies at most size-1 characters and ends dst with a zero. Answers strlen(src): when that is >= size, it
+/* Copies at most size-1 characters and ends dst with a zero. Returns strlen(src); if it is >= size, the text
  * was cut. */
 extern size_t rtapi_strlcpy(char *dst, const char *src, size_t size);
-/* Appends within a buffer of `size` bytes. Answers the length that the whole text would have had. */
+/* Appends within a buffer of `size` bytes. Returns the length that the whole text would have. */
 extern size_t rtapi_strlcat(char *dst, const char *src, size_t size);
 
-/* Splits a text at blanks into a vector ended by NULL; *argc (if given) receives its length. Free it with
- * rtapi_argv_free. NULL when memory is short. Not for realtime functions. */
+/* Splits a text at blanks into a vector ended by NULL; *argc (if not NULL) receives its length. Free it with
+ * rtapi_argv_free. Returns NULL without memory. Not for realtime functions. */
 extern char **rtapi_argv_split(rtapi_gfp_t flags, const char *argstr, int *argc);
 extern void rtapi_argv_free(char **argv);
 

@@ -126,7 +126,7 @@ Error unknown_command(const Word &word) {
 
 namespace {
 
-/// Whole sentences: a translation has other endings for one and for several.
+/// Translated as whole sentences, because singular and plural differ in many languages.
 std::string word_count_text(const CommandSpec &spec, int given) {
     const bool is_one = spec.min_words == 1;
     if (spec.max_words == ANY && is_one) {

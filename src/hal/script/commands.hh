@@ -17,7 +17,7 @@ struct CommandSpec;
 /// A command and its words (without its name and without arrows that only document).
 struct Call {
     const CommandSpec &spec;
-    SourcePlace place;  ///< of the command's name
+    SourcePlace place;  ///< position of the command's name
     std::vector<Word> words;
 
     const std::string &text(std::size_t i) const { return words[i].text; }
@@ -40,13 +40,13 @@ struct CommandSpec {
 std::span<const CommandSpec> commands();
 /// Null when the command does not exist.
 const CommandSpec *find_command(std::string_view name);
-/// The failure for an unknown command, with the nearest known one.
+/// Returns an error if the number of words is wrong.
 Error unknown_command(const Word &word);
 /// Checks the number of words.
 Result<> check_words(const Call &call);
 /// Text for a person, in the language of the environment.
 std::string help_text(const CommandSpec &spec);
-/// The same for all commands, one line each.
+/// One line for each command.
 std::string help_overview();
 
 /// `result` with position and hint added if missing.
@@ -54,7 +54,7 @@ Result<> at(Result<> result, const SourcePlace &place, const std::string &hint =
 /// "did you mean 'x'?" for the candidate nearest to `name`, or empty.
 std::string suggestion(std::string_view name, const std::vector<std::string> &candidates);
 
-/// Why the name does not exist: its component died, or "did you mean 'x'?", or empty.
+/// Why the name does not exist: its component died, or "did you mean 'x'?". Empty if the reason is not known.
 std::string missing_hint(Instance &hal, std::string_view name, const std::vector<std::string> &candidates);
 
 // Names of existing objects, for suggestions.

@@ -59,7 +59,7 @@ Result<> unload_module(Session &session, const std::string &name) {
     return session.host().unload_realtime(name);
 }
 
-/// Newest first; reports the first failure after trying all.
+/// Unloads the modules, newest first. Tries all, then returns the first failure.
 Result<> unload_all_modules(Session &session) {
     Result<> result;
     // Threads must not call functions that are being removed.

@@ -69,7 +69,7 @@ std::string death_status(Instance &hal) {
     return text;
 }
 
-/// The lock named by word 0, all without a word; `none` only where it is valid.
+/// The lock named by word 0; without a word all locks. `none` only if it is valid here.
 Result<std::uint8_t> lock_of(const Call &call, bool allowsNone) {
     if (call.words.empty()) {
         return LOCK_ALL;

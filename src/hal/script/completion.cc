@@ -18,7 +18,7 @@ using Words = std::vector<std::string>;
 /// A position in a command line: the words before it, and the start of the current one.
 struct Place {
     Session &session;
-    Words words;  ///< the command and its words so far, without arrows
+    Words words;  ///< words of the command so far, including its name, without arrows
     std::string start;
 
     Instance &hal() const { return session.hal(); }

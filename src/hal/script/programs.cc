@@ -167,7 +167,7 @@ Result<> SystemProgramHost::stop_all() {
             result = stopped;
         }
     }
-    // Also programs that have no component yet: they would join a HAL that has ended, or the next one.
+    // Also ends programs that have no component yet. They would join a HAL that has ended, or the next HAL.
     reap();
     for (const int pid : children_) {
         kill(pid, SIGTERM);
@@ -187,7 +187,8 @@ void SystemProgramHost::await_end(long longest_ns) {
     }
 }
 
-/// A program that ignores SIGTERM would outlive the machine, with its pins and the hardware that it controls.
+/// Kills the programs that ignore SIGTERM. They would outlive the machine, with their pins and their
+/// hardware.
 void SystemProgramHost::kill_programs() {
     for (const CompInfo &component : hal_.components().list()) {
         if (isProgram(component) && kill(component.pid, SIGKILL) == 0) {
@@ -222,8 +223,8 @@ bool SystemProgramHost::isProgramLeft() const {
     return !children_.empty();
 }
 
-/// Ended processes appear alive to kill() until their parent reads their status, which the parents of some
-/// components never do.
+/// kill() reports an ended process as alive until its parent reads its status, and the parents of some
+/// components never read it.
 void SystemProgramHost::reap() {
     std::erase_if(children_, [](int pid) { return waitpid(pid, nullptr, WNOHANG) != 0; });
     hal_.processes().reap_dead();

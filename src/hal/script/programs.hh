@@ -23,7 +23,7 @@ struct ProgramRequest {
 };
 
 enum class ProgramStart {
-    RUNNING,  ///< started (and ready or ended, when that was waited for)
+    RUNNING,  ///< started; also ready or ended, if the command waits for that
     LEFT_OUT  ///< not started here: its pins will not exist
 };
 
@@ -33,8 +33,8 @@ class ProgramHost {
     virtual Result<ProgramStart> start(const ProgramRequest &request) = 0;
     /// Requests the program of a component to end (SIGTERM).
     virtual Result<> stop(const std::string &component) = 0;
-    /// Ends all programs with components, and those started here that have none yet; returns when they have
-    /// ended.
+    /// Ends all programs with components, and all programs started here without a component; returns when
+    /// they have ended.
     virtual Result<> stop_all() = 0;
     /// Waits until the component is removed.
     virtual Result<> wait_for_end(const std::string &component) = 0;
@@ -51,7 +51,7 @@ class SystemProgramHost final : public ProgramHost {
     Result<> stop(const std::string &component) override;
     Result<> stop_all() override;
     Result<> wait_for_end(const std::string &component) override;
-    /// A program was started, which may become a component later.
+    /// True if a program was started. It may create a component later.
     bool hasStarted() const noexcept { return started_; }
 
   private:

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char *LIBRARY = "libmillwright_haltcl.so";
 
-/// Beside this program: ../lib/tcl in a build folder, the library folder when installed.
+/// Folders with the shared part: ../lib/tcl in a build folder, the library folder when installed.
 std::vector<std::string> places() {
     const std::string bin = program_folder();
     std::vector<std::string> places;

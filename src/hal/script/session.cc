@@ -22,7 +22,7 @@ namespace mw::hal::script {
 
 namespace {
 
-/// Also reads pipes: `halcmd -f <(program)`.
+/// Also reads pipes, for `halcmd -f <(program)`.
 Result<std::string> read_anything(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) {
@@ -73,7 +73,7 @@ void print(std::FILE *file, std::string_view text, bool endsLine) {
     if (endsLine) {
         std::fputc('\n', file);
     }
-    // Programs started by loadusr write to the same file: keeps the order.
+    // Flushes, because programs started by loadusr write to the same file and the order must be kept.
     std::fflush(file);
 }
 
@@ -131,7 +131,7 @@ void Session::report(const Error &error) {
     }
     Error shown = error;
     if (shown.place.file.empty()) {
-        // Typed, or from a command line: a line number would be meaningless.
+        // A typed command or one from a command line has no useful line number.
         shown.place = {};
     }
     output_->error(shown);

@@ -22,11 +22,11 @@ namespace mw::hal::script {
 class Output {
   public:
     virtual ~Output() = default;
-    /// Result of a command (show, list, getp...), including newlines.
+    /// Receives the result of a command (show, list, getp...), including newlines.
     virtual void data(std::string_view text) = 0;
-    /// What a command has done, without newline.
+    /// Receives the report of a command, without newline.
     virtual void info(std::string_view text) = 0;
-    /// Texts of print and echo, without newline.
+    /// Receives texts of print and echo, without newline.
     virtual void note(std::string_view text) = 0;
     virtual void warning(const Error &warning) = 0;
     virtual void error(const Error &error) = 0;
@@ -46,7 +46,7 @@ class StandardOutput final : public Output {
 /// Amount of output of a session.
 enum class Verbosity {
     SILENT,     ///< only results
-    ERRORS,     ///< failures and warnings
+    ERRORS,     ///< also the report of each command
     RESULTS,    ///< also what each command has done
     EVERYTHING  ///< also each command before it runs
 };
@@ -54,7 +54,7 @@ enum class Verbosity {
 /// Commands that run in each pass (TwoPass).
 enum class Pass {
     ALL,
-    LOADS,  ///< loadusr, list and source; loadrt is collected
+    LOADS,  ///< Called before a program is started.
     REST    ///< everything except loadrt and loadusr
 };
 
@@ -75,19 +75,19 @@ struct SessionOptions {
     bool is_script = false;            ///< results for programs: no titles, names instead of ids
     bool isEchoing = false;            ///< repeat each command
     bool has_placeholders = false;     ///< pins of omitted programs are placeholders
-    const IniLookup *ini = nullptr;    ///< for [SECTION]NAME; must outlive the session
+    const IniLookup *ini = nullptr;    ///< resolves [SECTION]NAME; must outlive the session
     std::vector<std::string> folders;  ///< folders for files, searched after the working folder
     const volatile std::sig_atomic_t *stop = nullptr;  ///< not zero: no more commands run
     std::vector<std::string> library;                  ///< folders of the prefix LIB:, searched last
     bool has_files = true;        ///< false: commands that read or write files are rejected
-    bool are_pipes_read = false;  ///< HAL files may be pipes: for a person who can interrupt the wait
+    bool are_pipes_read = false;  ///< HAL files may be pipes; for a person who can interrupt the wait
     Pass pass = Pass::ALL;
     LoadCollector *loads = nullptr;  ///< with Pass::LOADS
 };
 
 class Session {
   public:
-    /// All must outlive the session.
+    /// The arguments must outlive the session.
     Session(Host &host, ProgramHost &programs, Output &output, SessionOptions options = {});
 
     /// Runs the commands of a file (name: see find_file) up to the first failure, or all with keepsGoing.
@@ -100,8 +100,8 @@ class Session {
     /// Runs one command from separate words (of a command line): no comments, substitution or splitting.
     Result<> run_words(const std::vector<std::string> &words);
 
-    /// Runs one command for a script and returns its result. Failures are only in the result; no message is
-    /// sent.
+    /// Runs one command for a script and returns its result. A failure is only in the result and is not
+    /// printed.
     Result<std::string> call(const std::vector<std::string> &words);
     /// The interpreter for Tcl, loaded on first use.
     Result<ScriptRunner *> tcl();
@@ -112,7 +112,7 @@ class Session {
 
     /// True after exit or quit.
     bool hasEnded() const { return ended_; }
-    /// Omitted programs, with their pins without effect; empty when there are none.
+    /// The omitted programs, with their pins without effect; empty if there are none.
     std::vector<std::string> left_out() const { return placeholders_.report(); }
 
     // For the commands.

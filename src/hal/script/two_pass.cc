@@ -292,7 +292,7 @@ class TwoPass final : private LoadCollector {
         return {};
     }
 
-    /// Loads the modules in the order of their first lines; runs excluded files in between.
+    /// Loads the modules in the order of their first lines, and runs excluded files in between.
     Result<> load() {
         session_.options().pass = Pass::ALL;
         std::size_t next = 0;
@@ -330,7 +330,7 @@ class TwoPass final : private LoadCollector {
         return {};
     }
 
-    /// As with the options -k and -v of halcmd; failures have been reported and stop nothing.
+    /// Runs an excluded file as halcmd with options -k and -v: failures are reported and do not stop it.
     void run_excluded(const File &file) {
         const Verbosity verbosity = session_.options().verbosity;
         const bool keepsGoing = session_.options().keepsGoing;
@@ -356,7 +356,7 @@ Result<> run_two_pass(Session &session, const std::vector<HalFileEntry> &files, 
     const std::string lower = to_lower(keywords);
     const bool verbose = lower.find("verbose") != std::string::npos;
     if (report != TwoPassReport::NOTHING) {
-        // The two keywords with a meaning, without the others.
+        // The two keywords that have an effect.
         const bool keepsFiles = lower.find("nodelete") != std::string::npos;
         session.output().data(fmt::format("twopass:invoked with <{}{}{}> options\n", verbose ? "verbose" : "",
                                           verbose && keepsFiles ? " " : "", keepsFiles ? "nodelete" : ""));

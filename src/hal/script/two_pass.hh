@@ -26,7 +26,7 @@ class MergedLoads final : public LoadCollector {
         SourcePlace place;  ///< position of its first line
         std::vector<std::string> names;
         std::vector<SourcePlace> name_places;
-        std::string count_word;  ///< count or num_chan; empty without
+        std::string count_word;  ///< count or num_chan; empty if neither is set
         std::int64_t count = 0;
         std::vector<std::string> personalities;
         std::vector<Parameter> others;
@@ -50,13 +50,13 @@ class MergedLoads final : public LoadCollector {
 /// A HAL file in an INI file.
 struct HalFileEntry {
     std::string text;   ///< the file and, for scripts, its arguments
-    SourcePlace place;  ///< in the INI file
+    SourcePlace place;  ///< position in the INI file
 };
 
 enum class TwoPassReport {
-    NOTHING,  ///< only failures
-    FILES,    ///< the files found
-    VERBOSE   ///< and each step
+    NOTHING,  ///< prints only failures
+    FILES,    ///< also prints the files found
+    VERBOSE   ///< also prints each step
 };
 
 /// Runs the files through `session` with its options. A file with a line `#NOTWOPASS` (case and blanks are

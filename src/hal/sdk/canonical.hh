@@ -7,8 +7,8 @@
 //     limit.read(isHigh);                // in the driver's read function
 //
 // A prefix contains its separator. `declare` runs while loading and returns 0 or a negated errno, which the
-// Declare keeps too, so that the load fails. `read` and `write` belong to the thread of the driver; they
-// neither allocate nor wait. docs/integrator/hal/drivers.md explains the devices with an example.
+// Declare keeps too, so that the load fails. The driver's thread calls `read` and `write`, which neither
+// allocate nor wait. docs/integrator/hal/drivers.md explains the devices with an example.
 #pragma once
 
 #include "component.hh"
@@ -34,7 +34,7 @@ inline Name joined(Declare &d, const char *prefix, const char *name) noexcept {
     return full;
 }
 
-/// Names of the pins of a digital input, for drivers with other names.
+/// Names of the pins of a digital input, for drivers with different names.
 struct DigitalInNames {
     const char *in = "in";
     const char *in_not = "in-not";
@@ -71,7 +71,7 @@ struct DigitalOut {
         d.param(invert, joined(d, prefix, names.invert).text);
         return d.status();
     }
-    /// State for the hardware output.
+    /// Returns the state for the hardware output.
     bool write() const noexcept { return out.get() != invert.get(); }
 };
 
@@ -103,7 +103,7 @@ struct AnalogOut {
     In<double> value;
     In<bool> enable;
     ParamRw<double> scale, offset, high_limit, low_limit, bit_weight, hw_offset;
-    double range_low = 0.0, range_high = 0.0;  ///< of the hardware
+    double range_low = 0.0, range_high = 0.0;  ///< range of the hardware [V]
 
     int declare(Declare &d, const char *prefix, const ConverterRange &range = {}) noexcept {
         range_low = range.low;
@@ -186,7 +186,7 @@ struct EncoderIn {
         rawcounts = shown_count(result.raw);
         count = shown_count(result.count);
         set_finite(position, static_cast<double>(result.count) / usable_scale(scale));
-        // Last, so that a reader that sees FALSE has the position from the index.
+        // Written last, so that a reader that sees FALSE also sees the position from the index.
         if (result.index_taken) {
             index_enable = false;
         }

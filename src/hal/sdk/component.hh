@@ -22,7 +22,7 @@
 // default.
 #pragma once
 
-// Plain names: the files are beside this one also when installed.
+// Plain file names, because these files are beside this one also when installed.
 #include "declare.hh"
 #include "module.hh"
 #include "numbers.hh"

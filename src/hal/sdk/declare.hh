@@ -19,7 +19,7 @@ class Declare {
         rtapi_snprintf(prefix_, sizeof prefix_, "%s", prefix);
     }
 
-    /// The pin PREFIX.NAME (only PREFIX when `name` is empty).
+    /// Creates the pin PREFIX.NAME (only PREFIX when `name` is empty).
     template <class T, hal_pin_dir_t DIR>
     void pin(Pin<T, DIR> &pin, const char *name, std::type_identity_t<T> start = T{}) noexcept {
         char full[NAME_SIZE];
@@ -30,7 +30,7 @@ class Declare {
         }
     }
 
-    /// The parameter PREFIX.NAME.
+    /// Creates the parameter PREFIX.NAME.
     template <class T, hal_param_dir_t DIR>
     void param(Param<T, DIR> &param, const char *name, std::type_identity_t<T> start = T{}) noexcept {
         char full[NAME_SIZE];
@@ -40,7 +40,7 @@ class Declare {
         }
     }
 
-    /// The pin PREFIX.NAME by the naming rules, with its `legacy` name for older HAL files.
+    /// Creates the pin PREFIX.NAME by the naming rules, with its `legacy` name for older HAL files.
     template <class T, hal_pin_dir_t DIR>
     void legacy_pin(Pin<T, DIR> &renamed, const char *name, const char *legacy,
                     std::type_identity_t<T> start = T{}) noexcept {
@@ -51,7 +51,7 @@ class Declare {
         }
     }
 
-    /// The parameter PREFIX.NAME by the naming rules, with its `legacy` name.
+    /// Creates the parameter PREFIX.NAME by the naming rules, with its `legacy` name.
     template <class T, hal_param_dir_t DIR>
     void legacy_param(Param<T, DIR> &renamed, const char *name, const char *legacy,
                       std::type_identity_t<T> start = T{}) noexcept {
@@ -62,7 +62,7 @@ class Declare {
         }
     }
 
-    /// A pin with its number formatted into the name, as in "in-%02d".
+    /// Creates a pin with its number formatted into the name, as in "in-%02d".
     template <class T, hal_pin_dir_t DIR>
     void pin_at(Pin<T, DIR> &numbered, const char *format, int number,
                 std::type_identity_t<T> start = T{}) noexcept {
@@ -71,7 +71,7 @@ class Declare {
         pin(numbered, name, start);
     }
 
-    /// A parameter with its number formatted into the name.
+    /// Creates a parameter with its number formatted into the name.
     template <class T, hal_param_dir_t DIR>
     void param_at(Param<T, DIR> &numbered, const char *format, int number,
                   std::type_identity_t<T> start = T{}) noexcept {
@@ -93,8 +93,8 @@ class Declare {
         return number;
     }
 
-    /// The function PREFIX.NAME (only PREFIX without a name), which calls METHOD, a noexcept member without
-    /// parameters or with the period [ns].
+    /// Creates the function PREFIX.NAME (only PREFIX without a name), which calls METHOD, a noexcept member
+    /// without parameters or with the period [ns].
     template <auto METHOD, class Self>
     void function(Self *self, const char *name = "") noexcept {
         char full[NAME_SIZE];

@@ -21,7 +21,7 @@ constexpr double usable_scale(double scale) noexcept {
 struct ConverterRange {
     double low = -10.0;
     double high = 10.0;
-    double bit_weight = 1.0;  ///< one least significant bit
+    double bit_weight = 1.0;  ///< one least significant bit [V or mA]
     double hw_offset = 0.0;   ///< input: reading at 0 V; output: voltage for code 0
 };
 
@@ -88,9 +88,9 @@ class CounterExtension {
 
 /// Data of one read of an encoder's hardware.
 struct EncoderReading {
-    std::uint32_t counter = 0;  ///< of the hardware, modulo its width
+    std::uint32_t counter = 0;  ///< counter of the hardware, modulo its width
     bool index_latched = false;
-    std::uint32_t index_counter = 0;  ///< counter at the index, where isIndexLatched
+    std::uint32_t index_counter = 0;  ///< counter at the index, valid if isIndexLatched
 };
 
 /// Counts since the last reset or index.
@@ -103,7 +103,7 @@ class EncoderCount {
         bool isIndexEnabled = false;
     };
     struct Result {
-        std::int64_t count = 0;    ///< since reset or index
+        std::int64_t count = 0;    ///< since the last reset or index
         std::int64_t change = 0;   ///< since the last read; independent of reset and index
         std::int64_t raw = 0;      ///< since loading
         bool index_taken = false;  ///< the count was set to the index by this read

@@ -85,7 +85,8 @@ T *make() noexcept {
     return memory == nullptr ? nullptr : new (memory) T();
 }
 
-/// Completes a load: ready, or everything undone. Returns the component id, or a negated errno.
+/// Completes a load: the component becomes ready, or everything is undone. Returns the component id, or a
+/// negated errno.
 inline int finish(int comp_id, int status) noexcept {
     const int final_status = status == 0 ? hal_ready(comp_id) : status;
     if (final_status < 0) {

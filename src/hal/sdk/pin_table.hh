@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Pins declared once: a row of a table names a pin, its direction, type, unit and meaning, and says what is
-// read from it or written to it. From the table follow the pins in HAL, the copying of each cycle and the
-// manual page; a new pin is one row (docs/developer/extending/pin.md).
+// Pins declared once: a row of a table names a pin, its direction, type, unit and meaning, and defines how it
+// is read or written. The table generates the pins in HAL, the transfer in each cycle and the manual page; a
+// new pin needs only one row (docs/developer/extending/pin.md).
 //
 //     constexpr auto AXIS_PINS = sdk::pin_table("axis.@",
 //         sdk::in<bool>("jog-enable", "", "the wheel is on", [](AxisIn &a, bool v) { a.isEnabled = v; }),
 //         sdk::out<double>("pos-cmd", "unit", "commanded position", [](const AxisOut &a) { return a.position;
 //         }));
 //
-//     sdk::PinSet<AXIS_PINS> pins;      // of one axis
+//     sdk::PinSet<AXIS_PINS> pins;      // the pins of one axis
 //     pins.declare(comp_id, 0);         // axis.x.jog-enable, axis.x.pos-cmd
-//     pins.read(in);                    // every row that reads
-//     pins.write(out);                  // every row that writes
+//     pins.read(in);                    // all rows with a read function
+//     pins.write(out);                  // all rows with a write function
 //
-// In names # is replaced by the number of the instance, ## for it with two digits, @ for the letter of an
-// axis.
+// In names # is replaced by the number of the instance, ## by the number with two digits, @ by the letter of
+// an axis.
 #pragma once
 
 #include <tuple>
@@ -32,7 +32,7 @@ struct PinRow {
     using Value = T;
     static constexpr hal_pin_dir_t DIRECTION = DIR;
     const char *name;
-    const char *unit;  ///< "" for none
+    const char *unit;  ///< "" if there is none
     const char *doc;
     Read read;    ///< (In &, T): uses the value of the pin
     Write write;  ///< (const Out &) -> T: value for the pin
@@ -47,7 +47,7 @@ template <class T, class Write>
 constexpr auto out(const char *name, const char *unit, const char *doc, Write write) {
     return PinRow<T, HAL_OUT, Unused, Write>{name, unit, doc, {}, write};
 }
-/// Written only when its value changes, because the other side clears it.
+/// The pin is written only when its value changes, because the reader resets it.
 template <class T, class Read, class Write>
 constexpr auto in_out(const char *name, const char *unit, const char *doc, Read read, Write write) {
     return PinRow<T, HAL_IO, Read, Write>{name, unit, doc, read, write};
@@ -91,7 +91,7 @@ inline void expand_name(const char *pattern, int number, char (&out)[HAL_NAME_LE
 template <const auto &TABLE>
 class PinSet {
   public:
-    /// For a table whose names have no number; as below. [while loading]
+    /// For a table whose names have no number; otherwise as the function below. [while loading]
     int declare(int comp_id) noexcept { return declare(comp_id, 0); }
     /// 0 or a negated errno. [while loading]
     int declare(int comp_id, int number) noexcept {

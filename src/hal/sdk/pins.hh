@@ -28,8 +28,8 @@ constexpr hal_type_t type_of() noexcept {
     }
 }
 
-/// A pin: reads and assigns like a T. Each use is one access to the value in HAL memory, which others may
-/// change in between; copy it to a local variable where a function needs one value. [any thread]
+/// A pin: reads and assigns like a T. Each use is one access to the value in HAL memory, which another thread
+/// or process may change; copy it to a local variable if a function needs a constant value. [any thread]
 template <class T, hal_pin_dir_t DIR>
 class Pin {
   public:

@@ -13,7 +13,7 @@ namespace {
 
 /// Commands whose names have another meaning in Tcl: only with the prefix `hal`.
 constexpr std::array<std::string_view, 5> TAKEN = {"gets", "list", "exit", "quit", "source"};
-/// Commands that print their result; that of the others is returned, also that of `hal show`.
+/// Commands that print their result. Other commands return it, also `hal show`.
 constexpr std::array<std::string_view, 3> PRINTING = {"show", "save", "help"};
 
 template <std::size_t N>

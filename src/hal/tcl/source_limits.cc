@@ -35,7 +35,7 @@ int run_source(ClientData /*data*/, Tcl_Interp *interpreter, int count, Tcl_Obj 
 
 Result<> check_nesting(std::string_view script, const std::string &path) {
     int commands = 0, names = 0, line = 1;  // open brackets: [, and $name(
-    bool in_name = false;                   // behind $
+    bool in_name = false;                   // after a $
     for (std::size_t at = 0; at < script.size(); ++at) {
         const char c = script[at];
         if (c == '\\' && at + 1 < script.size()) {

@@ -15,10 +15,10 @@ namespace mw::hal::tcl {
 /// An error if more than 1000 `[` and `$name(` are nested; `path` is for its position.
 Result<> check_nesting(std::string_view script, const std::string &path);
 
-/// As check_nesting(), for a file. Tcl reports a file that cannot be read.
+/// As check_nesting(), for a file. If the file cannot be read, Tcl reports it.
 Result<> check_nesting_of_file(const std::string &path);
 
-/// Makes `source` check each file first.
+/// Makes the Tcl command `source` check each file first.
 void add_source_limits(Tcl_Interp *interpreter);
 
 }  // namespace mw::hal::tcl

@@ -95,7 +95,7 @@ TEST_F(RealtimeTasks, RefuseWhatIsWrong) {
     EXPECT_GT(rtapi_prio_highest(), rtapi_prio_next_lower(rtapi_prio_highest()));
 }
 
-/// The clock of its thread as seen by a HAL function.
+/// A HAL function that makes its thread follow another clock.
 struct Follower {
     std::atomic<long long> first{0}, reference{0};
     std::atomic<int> runs{0};
@@ -136,7 +136,7 @@ TEST(RealtimeCalls, OfTheCInterfaceLeaveTheHeapAlone) {
     const int semaphore = rtapi_sem_new(9, 1);
     const int queue = rtapi_fifo_new(9, 1, 64, 'W');
     ASSERT_GT(queue, 0);
-    (void)rtapi_inb(0x80);  // the first one logs
+    (void)rtapi_inb(0x80);  // the first rejected access writes a message to the log
     char bytes[8] = "1234567";
     mw::testing::AllocationGuard guard;
     EXPECT_EQ(rtapi_sem_try(semaphore), 0);

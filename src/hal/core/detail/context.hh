@@ -15,7 +15,7 @@ namespace detail {
 
 struct ThreadRunner;
 
-/// No heap, so that a realtime thread may use it at once.
+/// Uses no heap, so that a realtime thread can access it at once.
 struct ThreadContext {
     Instance *instance = nullptr;          ///< overrides the process's instance
     bool realtime = false;                 ///< inside a HAL thread
@@ -25,9 +25,9 @@ struct ThreadContext {
     const ThreadRunner *thread = nullptr;  ///< current HAL thread
     const ListEntry *calling = nullptr;    ///< its current function
     std::vector<const rtapi_mp_info *> *parameters =
-        nullptr;  ///< collects parameters of the module being loaded
+        nullptr;  ///< collects the parameters of the module being loaded
 };
-/// Of this thread. [any thread, realtime-safe]
+/// The context of the calling thread. [any thread, realtime-safe]
 ThreadContext &context() noexcept;
 
 }  // namespace detail

@@ -19,7 +19,7 @@ void wait_for_cycle(const Segment &segment, const ThreadRecord &thread) noexcept
     if ((cycle & 1U) == 0) {
         return;
     }
-    // A thread that hangs longer in a function cannot be helped; a dead process never ends its cycle.
+    // Maximum wait for a thread: a function may hang, and a dead process never ends its cycle.
     constexpr int TRIES = 10000;
     constexpr int LOOK_EVERY = 20;
     for (int i = 0; i < TRIES && thread.cycle.load(std::memory_order_seq_cst) == cycle; ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The function lists of threads. A process that changes a list fills the spare one, switches, and waits until
-// the cycle that may still use the old one has ended. With the segment's lock held, outside of HAL threads.
+// The function lists of threads. A process that changes a list fills the spare list, switches the lists, and
+// waits until the cycle that may use the old list has ended. The caller holds the segment's lock and runs
+// outside of HAL threads.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,7 @@ const FunctionList &active_list(const Segment &segment, const ThreadRecord &thre
 /// Waits until the functions of the current cycle have ended.
 void wait_for_cycle(const Segment &segment, const ThreadRecord &thread) noexcept;
 
-/// Copies the thread's list into the spare one; an error inside of a HAL thread.
+/// Copies the thread's list into the spare list. It is an error inside of a HAL thread.
 Result<FunctionList *> begin_change(const Segment &segment, ThreadRecord &thread);
 /// The thread uses the spare list from its next period on. On return the old list is no longer in use.
 void end_change(const Segment &segment, ThreadRecord &thread) noexcept;

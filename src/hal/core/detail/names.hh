@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Names in the tables of a segment: checks, messages and patterns. With the segment's lock held.
+// Names in the tables of a segment: checks, messages and patterns. The caller holds the segment's lock.
 #pragma once
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace mw::hal::detail {
 /// A failure with the code that the C API returns.
 std::unexpected<Error> refuse(int code, std::string message, std::string hint = {});
 
-/// The name must be free, also among aliases, and of a valid length.
+/// The name must have a valid length and must not be in use, also not as an alias.
 Result<> check_name(const Segment &segment, Kind kind, std::string_view name);
-/// HAL must not be locked against `what`.
+/// HAL must not be locked against `what`, or the result is an error.
 Result<> check_lock(const Segment &segment, std::uint8_t lock, const char *what);
 /// "there is no pin 'x'", with the nearest name as the hint.
 std::unexpected<Error> no_such(const Segment &segment, Kind kind, std::string_view name);
@@ -28,7 +28,7 @@ std::unexpected<Error> no_such(const Segment &segment, Kind kind, std::string_vi
 std::unexpected<Error> no_such_value(const Segment &segment, std::string_view name);
 
 bool isMatch(std::string_view glob, const std::string &name);
-/// The alias, if there is one.
+/// The alias, or the name if there is no alias.
 std::string shown_name(const Segment &segment, const Record &record, Offset alias);
 
 /// Sets name, original name, type, direction and owner of a pin or parameter.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Records of components and of what they own, for several registries. With the segment's lock held.
+// Records of components and of the objects that they own, for several registries. The caller holds the
+// segment's lock.
 #pragma once
 
 #include <string_view>
@@ -10,7 +11,7 @@
 namespace mw::hal::detail {
 
 CompRecord *find_comp(const Segment &segment, int comp_id) noexcept;
-/// By name or alias, as find_param().
+/// Finds a pin by name or alias.
 PinRecord *find_pin(const Segment &segment, std::string_view name) noexcept;
 ParamRecord *find_param(const Segment &segment, std::string_view name) noexcept;
 
@@ -38,10 +39,11 @@ struct ParamDeclaration {
 Result<> add_param(Segment &segment, CompRecord &comp, const ParamDeclaration &declared);
 
 enum class Outputs { AS_THEY_ARE, SAFE };
-/// Removes a component and what it owns; its outputs first take safe values, or leave theirs to the signals.
+/// Removes a component and what it owns; its outputs first take safe values or leave their values in the
+/// signals.
 void remove_comp(Segment &segment, CompRecord &comp, Outputs outputs) noexcept;
 
-/// Where a pin's value is: in its signal, or its own.
+/// Position of a pin's value: in its signal if it is linked, else its own.
 Offset value_of(const Segment &segment, const PinRecord &pin) noexcept;
 Value value_at(const Segment &segment, Type type, Offset value) noexcept;
 void set_safe_value(const Segment &segment, const PinRecord &pin) noexcept;

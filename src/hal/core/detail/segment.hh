@@ -47,12 +47,12 @@ enum class Kind : std::uint8_t {
 /// Start of every record. The list is authoritative; the hash chains are rebuilt from it when a process died
 /// during a change.
 struct Record {
-    Offset next;       ///< in the table's list, newest first; in its free list once removed
-    Offset hash_next;  ///< in the bucket
+    Offset next;       ///< next record in the table's list, newest first; after removal in the free list
+    Offset hash_next;  ///< next record in the same hash bucket
     std::uint32_t hash;
     /// For pins and signals: 8 bytes in a block of values, which stay with the record when it is reused. The
-    /// values of a component are adjacent, because the servo thread accesses hundreds of them in a cycle. A
-    /// pin's is used while it is not linked. Its content: realtime
+    /// values of a component are adjacent, because the servo thread accesses hundreds of them in a cycle. The
+    /// value of a pin is used while the pin is not linked. Content: realtime
     Offset value;
     std::array<char, NAME_LENGTH + 1> name;
 
@@ -64,10 +64,10 @@ struct CompRecord : Record {
     CompType type;
     bool isReady;
     bool is_loaded_by_loadrt;
-    bool end_requested;  ///< its end was requested
+    bool end_requested;  ///< another process has requested its end
     runtime::ProcessId process;
     std::uint64_t base;  ///< address of the content in the owner's process
-    Offset insmod_args;  ///< a text
+    Offset insmod_args;  ///< a text in the segment
 };
 
 struct PinRecord : Record {
@@ -76,7 +76,7 @@ struct PinRecord : Record {
     bool has_safe_value;
     Offset comp;
     Offset signal;
-    Offset slot;  ///< the pointer that the component reads
+    Offset slot;  ///< the pointer through which the component accesses the value
     Offset alias;
     std::uint64_t safe_value;
 };
@@ -184,14 +184,14 @@ struct Header {
     std::atomic<std::uint8_t> lock;
     bool is_virtual;
     bool realtime;                           ///< threads have realtime priority
-    std::array<char, 512> realtime_missing;  ///< why they do not
+    std::array<char, 512> realtime_missing;  ///< the reason why they have no realtime priority
     std::int32_t next_comp_id;
     std::int32_t spared_pid;    ///< process whose components remain while the machine brakes; 0: none
     std::uint32_t death_count;  ///< since the start; the last DEATHS of them are stored
     std::array<DeathRecord, DEATHS> deaths;
     EndRecord end;
-    Offset top;                        ///< first byte not allocated yet
-    Offset next_value, end_of_values;  ///< the rest of the newest block of values
+    Offset top;                        ///< first byte that is not allocated
+    Offset next_value, end_of_values;  ///< the unused part of the newest block of values
     std::array<Table, static_cast<std::size_t>(Kind::COUNT)> tables;
 };
 
@@ -252,7 +252,7 @@ class Segment {
     }
     /// Starts a new cache line for the next value.
     void separate_values() noexcept;
-    /// Puts a filled record into its table.
+    /// Inserts a filled record into its table.
     void insert(Kind kind, Record &record) noexcept;
     void remove(Kind kind, Record &record) noexcept;
 
@@ -277,7 +277,7 @@ class Segment {
     bool isShared_ = false;
 };
 
-/// Locks a segment during its lifetime. Reading needs the lock too.
+/// Locks a segment during its lifetime. Reading requires the lock, too.
 class Guard {
   public:
     explicit Guard(Segment &segment) noexcept : segment_(segment) { segment_.lock(); }

@@ -67,8 +67,8 @@ struct Part {
     std::uint32_t end;
 };
 
-/// Reading a counter takes longer than a short function. So each period times up to 16 functions of a thread,
-/// or a quarter of them, in turn; the whole thread is timed in every period.
+/// Reading a counter takes longer than a short function. So each period times the next 16 functions of a
+/// thread, or the next quarter of them. The whole thread is timed in every period.
 Part part_to_time(ThreadRecord &thread, Part all) noexcept {
     constexpr std::uint32_t AT_LEAST = 16;
     constexpr std::uint32_t SHARE = 4;

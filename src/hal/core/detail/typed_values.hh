@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A value that a caller passes for the object `name`, in the object's type or an error that names both types.
+// Converts a value that a caller passes for the object `name` to the object's type. An error names both
+// types.
 #pragma once
 
 #include <string_view>

@@ -50,7 +50,7 @@ TEST_F(HalTest, ValuesOfAComponentLieSideBySideAndAloneInTheirCacheLines) {
     const int other = *hal.components().create("other");
     void **of_other = *hal.pins().create("other.p", Type::FLOAT, Dir::OUT, other);
     EXPECT_FALSE(lines.contains(place(of_other) / 64));
-    // A reused value is zero.
+    // A value that is reused must be zero.
     write(of_other, 3);
     const std::uintptr_t used = place(of_other);
     ASSERT_TRUE(hal.components().remove(other));

@@ -13,7 +13,8 @@ TEST(AllocationGuard, CountsWhatThisThreadDoes) {
     mw::testing::AllocationGuard guard;
     EXPECT_EQ(guard.calls(), 0U);
     int *memory = new int(1);
-    __asm__ volatile("" : : "r"(memory) : "memory");  // the compiler may remove an unused pair
+    // prevents the compiler from removing an unused allocation
+    __asm__ volatile("" : : "r"(memory) : "memory");
     delete memory;
     EXPECT_EQ(guard.calls(), 2U);
 }

@@ -36,7 +36,8 @@ bool isSoon(const std::function<bool()> &condition) {
     return true;
 }
 
-/// Runs `work` in a child, which then waits to be ended; returns when the work is done. 0 when it failed.
+/// Runs `work` in a child, which then waits to be ended. Returns the child's process id when the work is
+/// done, 0 when it failed.
 pid_t run_in_child(const std::function<bool()> &work) {
     int ready[2];
     if (::pipe(ready) != 0) {
@@ -193,8 +194,8 @@ TEST_F(HostTest, BrakesAndEndsWhenTheControllingProcessDies) {
     EXPECT_EQ(*left, 0) << "it braked to the end";
 }
 
-/// Task has threads, which the kernel ends one after the other: the first one ends before the process does.
-/// An enable chain through its pins must not interrupt the braking then.
+/// Task has several threads, which the kernel ends one after the other, so its first thread ends before the
+/// process does. An enable chain through its pins must not interrupt the braking in this time.
 TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands) {
     auto client = start();
     ASSERT_NE(client, nullptr);
@@ -208,7 +209,7 @@ TEST_F(HostTest, OutputsOfTheControllingProcessStayUntilTheMachineStands) {
         const bool ready = own->hal().components().set_ready(id).has_value() && own->control().has_value();
         std::thread([] {
             ::usleep(50'000);
-            (void)::syscall(SYS_tgkill, ::getpid(), ::getpid(), SIGUSR1);  // ends its pause
+            (void)::syscall(SYS_tgkill, ::getpid(), ::getpid(), SIGUSR1);  // ends its sleep
             while (true) {
                 ::pause();
             }
@@ -326,11 +327,12 @@ TEST_F(HostTest, ALockHeldByAKilledProcessIsRecovered) {
             const int id = *own->components().create("holder");
             own->pins().create("holder.pin", Type::S32, Dir::IN, id).value();
             (void)own->signals().link("holder.pin", "s");
-            // Never destroyed: the kernel marks the lock in the memory of the killed process.
+            // The segment is never destroyed, because the kernel marks the lock in the memory of the killed
+            // process.
             detail::Segment &segment = *new detail::Segment(
                 runtime::SharedMemory::attach(segment_name(instance), detail::LAYOUT).value(), true);
             segment.lock();
-            // During the creation of a record, at different points.
+            // Kills the process at different points of the creation of a record.
             auto *pin = segment.make<detail::PinRecord>(detail::Kind::PIN, "holder.half");
             detail::Table &table = segment.table(detail::Kind::PIN);
             if (round % 3 > 0) {

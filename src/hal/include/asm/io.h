@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* Port access under the kernel's names, for drivers that were written for them. */
+/* Port access under the kernel's names, for drivers written for the kernel. */
 #ifndef RTAPI_ASM_IO_H
 #define RTAPI_ASM_IO_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* The calls as a component in C writes them. */
+/* Calls in the form that a component in C uses. */
 #include "hal/include/inifile.h"
 
 int level_of_name(const char *name, int *level) {
@@ -18,7 +18,7 @@ const char *find_in_name(const char *name) {
     return iniFind(name, "TEXT", "A");
 }
 
-/* The header declares PATH_MAX, so that a buffer for a path needs no further header. */
+/* The header declares PATH_MAX, so that a buffer for a path needs no other header. */
 int path_of_stream(FILE *stream, char (*path)[PATH_MAX]) {
     return iniFindString(stream, "PATH", "A", *path, sizeof *path);
 }

@@ -31,7 +31,7 @@ class SessionTest : public ::testing::Test {
         hal_options.name = "session-test";
         hal_options.scheduler = &clock;
         host = std::move(*LocalHost::create(hal_options));
-        // Components of other folders are not built for this test: it has its own pins.
+        // This test has its own pins, because components of other folders are not built for it.
         const int id = *host->hal().components().create("board");
         for (const char *name : {"board.in0", "board.in1", "board.io"}) {
             slots.push_back(*host->hal().pins().create(

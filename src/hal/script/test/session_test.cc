@@ -211,7 +211,7 @@ TEST_F(SessionTest, PrintAndEchoGoToTheNotes) {
     EXPECT_EQ(output.notes, "test.hal:1: HALCMD MSG: \"hello there\"\n(3)<echo>: unecho\n");
 }
 
-// The signal arrived before the wait.
+// The signal must be detected if it arrived before the wait.
 TEST_F(SessionTest, AStopIsSeenAlsoByAWaitThatBeginsAfterIt) {
     const volatile std::sig_atomic_t stop = SIGINT;
     SystemProgramHost system(host->hal(), &stop);

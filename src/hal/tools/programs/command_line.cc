@@ -33,8 +33,7 @@ void apply(CommandLine &line, const options::Letter &option) {
     case 'T': line.wants_tcl = true; break;
     case 'i': line.ini_path = option.value; break;
     default:
-        break;  // R: without effect, because the lock of the HAL segment is robust and frees itself when its
-                // holder dies
+        break;  // R has no effect: the lock of the HAL segment is robust and is released when its holder dies
     }
 }
 
@@ -75,7 +74,7 @@ Result<> IniOption::load(const std::string &path) {
 
 namespace {
 
-/// Reads lines of standard input: with an editor at a terminal.
+/// Reads lines of standard input, with a line editor at a terminal.
 class InputLines {
   public:
     explicit InputLines(script::Session &session) : is_terminal_(isatty(STDIN_FILENO) == 1) {
@@ -90,7 +89,7 @@ class InputLines {
         }
     }
     bool isTerminal() const { return is_terminal_; }
-    /// The next line; `continued`: it continues the previous one.
+    /// The next line. `continued`: the line continues the previous line.
     std::optional<std::string> next(bool continued) {
         if (editor_ != nullptr) {
             return editor_->read(continued ? "      > " : "halcmd: ");

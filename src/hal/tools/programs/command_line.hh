@@ -52,8 +52,8 @@ Result<> run_standard_input(script::Session &session);
 /// Runs the HAL files of an INI file in two passes; an error unless it has [HAL]TWOPASS.
 Result<> run_two_pass_ini(script::Session &session, const ini::IniFile &ini);
 
-/// A realtime process that was joined, or started because none was running. One that was started here ends
-/// with this object if nothing is left in its HAL, else it continues.
+/// A realtime process that was joined, or started because none was running. A process started here ends with
+/// this object if its HAL is empty, else it continues.
 class JoinedHost {
   public:
     JoinedHost(std::unique_ptr<HostClient> host, bool isStartedHere)

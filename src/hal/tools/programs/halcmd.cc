@@ -53,7 +53,7 @@ int show_help(const CommandLine &line) {
 }
 
 /// Joins the running realtime process; a command that loads something may start a persistent one.
-/// No module, signal or thread, and no component of a process that runs.
+/// True if there is no module, signal or thread, and no component of a running process.
 bool isEmpty(HostClient &host) {
     Instance &hal = host.hal();
     const auto modules = host.modules();
@@ -133,7 +133,7 @@ int halcmd(const std::vector<std::string> &arguments) {
     script::StandardOutput output;
     script::SystemProgramHost programs((*host)->hal());
     script::Session session(**host, programs, output, line->session);
-    // Nothing is left to do then, independent of what this command waits for.
+    // The realtime process has ended, so this command has nothing to do, whatever it waits for.
     const HostWatch watch(**host, [&host] {
         (void)fail_with(*(*host)->death());
         std::fflush(stdout);

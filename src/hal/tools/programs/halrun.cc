@@ -38,7 +38,7 @@ Result<> tell(const Error &error) {
 }
 
 void handle_signals() {
-    // Without SA_RESTART, so that waiting ends too.
+    // Without SA_RESTART, so that a signal also ends waiting.
     struct sigaction action{};
     action.sa_handler = [](int) { stop_requested = 1; };
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
@@ -79,7 +79,7 @@ Result<> run(const CommandLine &line, script::Session &session, const ini::IniFi
     } else {
         first = run_files(line, session);
     }
-    // Also after a failure: to inspect the state.
+    // Reads input also after a failure, so that the user can inspect the state.
     const bool readsInput = line.words.empty() || line.interactive || line.wants_tcl;
     if (!readsInput || session.hasEnded() || stop_requested != 0) {
         return first;

@@ -15,7 +15,7 @@ namespace {
 constexpr auto LOOK_EVERY = std::chrono::milliseconds(20);
 constexpr auto INTERRUPT_EVERY = std::chrono::milliseconds(10);
 
-/// Sleeps; false at once when the watch ends.
+/// Sleeps; returns false at once when the watch ends.
 bool hasSlept(const std::stop_token &stop, std::chrono::milliseconds time) {
     std::mutex mutex;
     std::condition_variable_any never;

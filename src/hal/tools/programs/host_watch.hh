@@ -12,8 +12,8 @@ namespace mw::hal::tools {
 class HostWatch {
   public:
     /// `on_death` is called once, in a separate thread. If it returns, the thread that created the watch
-    /// receives SIGTERM every 10 ms until the watch ends, so that no system call blocks it; that thread must
-    /// handle the signal. `host` must outlive the watch.
+    /// receives SIGTERM every 10 ms until the watch ends, so that it does not remain in a system call; that
+    /// thread must handle the signal. `host` must outlive the watch.
     HostWatch(const HostClient &host, std::function<void()> on_death);
     ~HostWatch();
     HostWatch(const HostWatch &) = delete;

@@ -51,7 +51,7 @@ struct LineEditor::Impl {
 
     bool isStopped() const { return options.stop != nullptr && *options.stop != 0; }
 
-    /// One byte is one character: HAL names are ASCII.
+    /// Reads one byte as one character, because HAL names are ASCII.
     static int get_character(EditLine *editor, wchar_t *character) {
         const Impl &here = of(editor);
         while (!here.isStopped()) {
@@ -64,7 +64,8 @@ struct LineEditor::Impl {
             if (ready <= 0 || ::read(STDIN_FILENO, &byte, 1) != 1) {
                 return 0;
             }
-            // An end of input typed before the editor has set up the terminal arrives as 0 (Linux, n_tty).
+            // If the user types end-of-input before the editor has set up the terminal, Linux passes a 0
+            // (n_tty).
             constexpr unsigned char END_OF_INPUT = 4;
             *character = byte == 0 ? END_OF_INPUT : byte;
             return 1;

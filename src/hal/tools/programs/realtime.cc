@@ -40,7 +40,7 @@ int status() {
     return alive ? 0 : 1;
 }
 
-/// In a separate instance: does not affect a running machine.
+/// Runs in a separate instance, so that it does not affect a running machine.
 int verify() {
     auto host = HostClient::start("verify-" + std::to_string(::getpid()));
     Result<> done = host ? (*host)->control() : std::unexpected(host.error());

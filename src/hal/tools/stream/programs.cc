@@ -145,7 +145,7 @@ Result<> run_streamer(const StreamerOptions &options, volatile std::sig_atomic_t
             language::tell(fmt::format("halstreamer: {}; line skipped", record.error().str()));
             continue;
         }
-        // Checked first: a failed write would count as an overrun.
+        // Checked first, because a failed write would count as an overrun.
         while (!hal_stream_writable(&attachment.stream)) {
             if (stop != 0) {
                 return fail("stopped before the end of the input");

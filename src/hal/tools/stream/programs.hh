@@ -12,7 +12,7 @@ namespace mw::hal::stream_tools {
 struct SamplerOptions {
     int channel = 0;
     long count = -1;      ///< samples to read; below 0: until stopped
-    bool tagged = false;  ///< the sample's number first
+    bool tagged = false;  ///< each line begins with the number of the sample
     std::string file;     ///< empty: standard output
 };
 

@@ -26,7 +26,7 @@ bool isAlive(int pid) {
     return pid != 0 && (::kill(pid, 0) == 0 || errno == EPERM);
 }
 
-/// Adds the function to a thread unless one has it; returns the thread to which it was added.
+/// Adds the function to a thread unless a thread already has it; returns the thread to which it was added.
 Result<std::string> enter_thread(Instance &hal, const std::string &wanted) {
     const std::vector<ThreadInfo> threads = hal.threads().list();
     std::string chosen = wanted;

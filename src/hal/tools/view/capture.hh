@@ -28,7 +28,7 @@ struct CaptureRecord {
     std::vector<Type> types;
     std::vector<double> times_s;               ///< of each sample; 0 at the trigger
     std::vector<std::vector<double>> columns;  ///< one value per sample for each name
-    /// Names whose links changed during the record: later values are those of the old address.
+    /// Names whose links changed during the record. Their later values are read from the old address.
     std::vector<std::string> moved;
 };
 
@@ -47,7 +47,7 @@ class Capture {
     Result<> begin(const CaptureRequest &request);
     /// State of the last record; FILLING until the next cycle.
     CaptureState state() const noexcept;
-    /// Triggers it now.
+    /// Triggers the record now.
     void force() noexcept;
     void cancel() noexcept;
     /// The record, when the state is DONE.

@@ -9,7 +9,7 @@
 
 namespace mw::hal::view {
 
-/// Of rtapi_shmem.
+/// Key of the block in rtapi_shmem.
 inline constexpr int CAPTURE_KEY = 0x4d570300;
 inline constexpr std::uint32_t CAPTURE_MAGIC = 0x4d576361;
 inline constexpr int CAPTURE_CHANNELS = 16;
@@ -29,7 +29,7 @@ enum class TriggerKind : std::uint32_t {
     BELOW,    ///< the value is below the level
     RISING,   ///< the value rises above the level
     FALLING,  ///< the value falls below the level
-    EITHER    ///< either of the two
+    EITHER    ///< the value rises above or falls below the level
 };
 
 struct CaptureChannel {
@@ -45,14 +45,15 @@ struct CaptureSettings {
     std::uint32_t pretrigger;  ///< samples before the trigger, below `samples`
     std::uint32_t every;  ///< record every N-th call, at least 1; triggers are checked in recorded calls only
     TriggerKind trigger;
-    std::uint32_t trigger_channel;  ///< its index; a channel only for the trigger is recorded, too
+    std::uint32_t trigger_channel;  ///< channel of the trigger; a channel used only for the trigger is
+                                    ///< recorded, too
     double level;
 };
 
 struct CaptureBlock {
     std::uint32_t magic;
     std::uint32_t capacity;              ///< words in `data`
-    std::atomic<std::int32_t> client;    ///< process that uses it, 0: none
+    std::atomic<std::int32_t> client;    ///< process that uses the block; 0: none
     CaptureSettings settings;            // written by the client before `request` is released
     std::atomic<std::uint32_t> request;  // released by the client, acquired by the module
     std::atomic<std::uint32_t> cancel;   // request to end without a record

@@ -52,7 +52,7 @@ struct Span {
     std::size_t first, last;
 };
 
-/// The range of bins with counts; the middle ones when there are none.
+/// The range of bins with counts, or the middle bins when there are no counts.
 Span met(const LatencyFigures &f) {
     Span span{f.bins.size() / 2, f.bins.size() / 2};
     bool first = true;

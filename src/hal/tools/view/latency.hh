@@ -27,7 +27,8 @@ struct LatencyFigures {
     std::int64_t period_ns = 0, bin_ns = 0;
     std::uint64_t intervals = 0, below = 0, above = 0;
     std::int64_t last_ns = 0, min_ns = 0, max_ns = 0;
-    double mean_ns = 0.0, deviation_ns = 0.0;  ///< of the deviations from the period; standard deviation
+    double mean_ns = 0.0, deviation_ns = 0.0;  ///< mean and standard deviation of the deviations from the
+                                               ///< period
     std::vector<std::uint64_t> bins;           ///< LATENCY_BINS bins, the period in the middle
 
     /// The maximum deviation from the period, early or late [ns].
@@ -55,8 +56,8 @@ struct LatencyOptions {
     double seconds = 0.0;      ///< 0: until a signal
     bool showsBars = false;    ///< histograms at the end
     bool live = false;         ///< redraws the table each second, for a terminal
-    std::string picture_path;  ///< empty: none
-    std::string csv_path;      ///< empty: none; columns thread, deviation [ns], count
+    std::string picture_path;  ///< file of the picture; empty: none
+    std::string csv_path;      ///< CSV file, empty: none; columns thread, deviation [ns], count
     std::string note;          ///< text in the picture
 };
 

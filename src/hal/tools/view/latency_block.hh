@@ -18,7 +18,7 @@ struct LatencySlot {
     std::atomic<std::int64_t> period_ns, bin_ns;
     std::atomic<std::uint64_t> intervals;
     std::atomic<std::int64_t> last_ns, min_ns, max_ns;  ///< intervals
-    std::atomic<double> sum_ns, sum_squares_ns2;        ///< of the deviations
+    std::atomic<double> sum_ns, sum_squares_ns2;        ///< sums of the deviations and of their squares
     std::atomic<std::uint64_t> below, above;
     std::atomic<std::uint64_t> bins[LATENCY_BINS];
 };

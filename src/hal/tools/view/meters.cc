@@ -18,9 +18,9 @@ std::vector<std::string> meter_words(const std::vector<std::string> &words, bool
         const std::string &word = words[i];
         const bool has_next = i + 1 < words.size();
         if (word == "-s") {
-            continue;  // a small window: no effect
+            continue;  // -s, a small window, has no effect
         }
-        if (word == "-g") {  // position on the screen: no effect
+        if (word == "-g") {  // -g, the position on the screen, has no effect
             while (i + 1 < words.size() && parse_int(words[i + 1]).has_value()) {
                 ++i;
             }

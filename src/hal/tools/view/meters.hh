@@ -15,7 +15,7 @@ std::vector<std::string> meter_words(const std::vector<std::string> &words, bool
 /// `halmeter`, on a terminal or as lines of text.
 int halmeter(const std::vector<std::string> &words, volatile std::sig_atomic_t &stop);
 
-/// `halscope`: names the replacement.
+/// `halscope`: prints the name of the replacement.
 int halscope(const std::vector<std::string> &words);
 
 }  // namespace mw::hal::view

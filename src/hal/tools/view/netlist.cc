@@ -124,7 +124,7 @@ std::string signal_text(const SignalInfo &signal, const std::map<std::string, st
     return text;
 }
 
-/// Runs dot with the text as its input, in memory, so that nothing can block and no other file is written.
+/// Runs dot with the text as its input in memory, so that nothing can block and no other file is written.
 Result<> run_dot(const std::string &text, const std::string &format, const std::string &path) {
     const int input = ::memfd_create("netlist", MFD_CLOEXEC);
     const bool is_written = input >= 0 &&

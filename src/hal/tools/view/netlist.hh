@@ -10,7 +10,7 @@
 namespace mw::hal::view {
 
 struct NetlistOptions {
-    std::string glob = "*";  ///< matching components or instances, with the objects to which they are linked
+    std::string glob = "*";      ///< matching components or instances, with the objects linked to them
     bool showsUnlinked = false;  ///< also pins without a signal
     bool showsValues = false;    ///< also the current values of signals
 };

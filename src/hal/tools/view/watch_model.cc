@@ -91,7 +91,7 @@ void WatchModel::clamp() {
 }
 
 void WatchModel::add_tree(const std::vector<WatchRow> &leaves) {
-    std::vector<std::string> path;  // open branches above the next leaf
+    std::vector<std::string> path;  // branches open at the current row
     for (const WatchRow &leaf : leaves) {
         // Branches: all parts of the name except the last.
         std::size_t level = 0, begin = 0;
@@ -211,7 +211,7 @@ void WatchModel::toggle(bool wants_open, bool wants_closed) {
             open_.erase(row.name);
         }
     } else if (!wants_open && row.depth > 0) {
-        // Left on a leaf: moves to its branch.
+        // The left key on a leaf moves to its branch.
         while (cursor_ > 0 && rows_[cursor_].depth >= row.depth) {
             --cursor_;
         }

@@ -54,13 +54,13 @@ class WatchModel {
     /// Handles a key; type() handles letters of a text.
     void press(Key key);
     void type(const std::string &text);
-    /// Rows that fit on the screen, for the page keys and for scrolling.
+    /// Number of rows that fit on the screen, for the page keys and for scrolling.
     void set_height(std::size_t rows) { height_ = rows < 1 ? 1 : rows; }
 
     Page page() const noexcept { return page_; }
     const std::vector<WatchRow> &rows() const noexcept { return rows_; }
     std::size_t cursor() const noexcept { return cursor_; }
-    /// First visible row that keeps the cursor on the screen.
+    /// First visible row, chosen so that the cursor is on the screen.
     std::size_t top() const noexcept { return top_; }
     const std::string &filter() const noexcept { return filter_; }
     /// The status line: the typed text, an error, or the keys.

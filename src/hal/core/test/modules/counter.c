@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* A component in C as people write them: pins in memory of hal_malloc, a static, module parameters of all
- * kinds. */
+/* A component in C as users write it: pins in memory of hal_malloc, a static variable, module parameters of
+ * all types. */
 #include "hal.h"
 #include "rtapi.h"
 #include "rtapi_app.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* A component that crashes when its pin crasher.now becomes TRUE: loadrt crasher how=null|fpe|abort, or at
- * once with how=load. */
+/* A component that crashes when its pin crasher.now becomes TRUE (loadrt crasher how=null|fpe|abort), or
+ * while it is loaded (how=load). */
 #include <stdlib.h>
 #include <string.h>
 

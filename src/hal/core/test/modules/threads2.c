@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* Makes a fast and a slow thread, and uses what a millwright_ext.h module may use. */
+/* Makes a fast and a slow thread, and uses the functions of millwright_ext.h. */
 #include "millwright_ext.h"
 #include "rtapi_app.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* Stands in for a motion controller: brakes for some cycles once its controlling process has died. */
+/* Replaces a motion controller in tests: brakes for some cycles after its controlling process has died. */
 #include "millwright_ext.h"
 #include "rtapi_app.h"
 

@@ -18,7 +18,7 @@ class Death : public Programs {
     Death() { setenv("MILLWRIGHT_MODULE_PATH", MW_TEST_MODULES, 1); }
     ~Death() override { unsetenv("MILLWRIGHT_MODULE_PATH"); }
 
-    /// Remaining files of the instance.
+    /// The files of the instance that remain.
     std::vector<std::string> leftovers() const {
         std::vector<std::string> left;
         const std::string runtime = *runtime::runtime_folder() + "/" + instance;
@@ -33,7 +33,7 @@ class Death : public Programs {
     }
     std::string errors() const { return read_file((folder / "err").string()).value_or(""); }
 
-    /// Waits for `text`; returns the seconds that it took, negative when it did not appear.
+    /// Waits for `text` and returns the seconds; negative when it does not appear.
     double wait_for_error(const std::string &text, Clock::time_point since) const {
         while (Clock::now() < since + std::chrono::seconds(20)) {
             if (errors().find(text) != std::string::npos) {

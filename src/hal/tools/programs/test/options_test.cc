@@ -251,7 +251,7 @@ TEST_F(Prompt, CompletesRecallsAndGoesOnAfterMistakes) {
     await("unknown command 'bogus'\r\nhalcmd: ");
     type("getp and2.0.in1\n");
     await("TRUE\r\nhalcmd: ");
-    // The last line, with its end replaced.
+    // Recalls the last line and replaces its end.
     type("\x1b[A\b0\n");
     await("FALSE\r\nhalcmd: ");
     type("newsig two\\\n");

@@ -92,7 +92,7 @@ TEST_F(Programs, NothingSurvivesAKilledHalrun) {
     (void)wait(pid);
     for (int i = 0; i < 1000 && (isHostAlive(instance) || kill(program, 0) == 0); ++i) {
         usleep(10000);
-        // An orphan of this test's process group may remain a zombie if no process collects it.
+        // An orphan of this test's process group may remain a zombie if no process reads its status.
         const auto state = read_file("/proc/" + std::to_string(program) + "/stat").value_or("");
         if (!isHostAlive(instance) && state.find(") Z ") != std::string::npos) {
             break;
@@ -107,7 +107,7 @@ TEST_F(Programs, SignalsEndHalrunInOrder) {
     for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
         std::ofstream(folder / "b.hal") << "loadrt threads\nstart\nloadusr -w sleep 30\n";
         const pid_t pid = start({"halrun", "b.hal"});
-        // Up to 10 s on a loaded computer; usually some milliseconds.
+        // Waits up to 10 s on a loaded computer; usually it takes some milliseconds.
         for (int i = 0; i < 1000 && !isHostAlive(instance); ++i) {
             usleep(10000);
         }

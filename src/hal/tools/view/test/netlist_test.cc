@@ -40,7 +40,7 @@ TEST(Netlist, EndingsSayTheFormat) {
         std::filesystem::temp_directory_path() / ("net" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
     ASSERT_TRUE(write_netlist(bench.hal(), {}, folder / "a.dot"));
-    // A file of the user beside it is kept.
+    // A file of the user with a similar name is kept.
     ASSERT_TRUE(write_file_atomically(folder / "a.svg.dot", "mine"));
     const Result<> drawn = write_netlist(bench.hal(), {}, folder / "a.svg");
     ASSERT_TRUE(drawn) << drawn.error().str();

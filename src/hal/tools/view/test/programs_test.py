@@ -34,7 +34,7 @@ class ProgramsTest(unittest.TestCase):
                        TERM="xterm", LINES="30", COLUMNS="120", PATH=f"{BIN}:/usr/local/bin:/usr/bin:/bin")
         path = pathlib.Path(cls.folder.name, "m.hal")
         path.write_text(HAL_FILE, encoding="utf-8")
-        # halrun -I stays until its input ends.
+        # halrun -I runs until its input ends.
         cls.halrun = subprocess.Popen([BIN / "halrun", "-I", path], env=cls.env, stdin=subprocess.PIPE,
                                       stdout=subprocess.DEVNULL)
         end = time.monotonic() + 10
@@ -114,7 +114,7 @@ class ProgramsTest(unittest.TestCase):
             os.write(main, b"/frequency\r")
             self.read_until(main, b"frequency")
             os.write(main, b"\x1bOB\x1bOBs25\r")
-            # The screen shows changes only: what HAL says counts.
+            # The screen is updated only on changes, so the values in HAL are checked.
             end = time.monotonic() + 10
             while self.run_program("halcmd", "getp", "siggen.0.frequency")[1] != "25\n":
                 self.assertLess(time.monotonic(), end)
@@ -161,7 +161,7 @@ class ProgramsTest(unittest.TestCase):
         self.assertEqual(status, 0)
         self.assertIn("intervals by deviation", out)
         with open(os.path.join(self.folder.name, "l.csv"), encoding="utf-8") as text:
-            # Of a thousand periods: the machine may be busy, so most may be missing.
+            # The threads run a thousand periods. Most may be missing, because the computer may be busy.
             self.assertGreater(sum(int(row["count"]) for row in csv.DictReader(text)), 20)
         self.assertEqual(self.run_program("latency-test", "3x")[0], 1)
 
