@@ -22,7 +22,7 @@ inline double cosine(double degrees) noexcept {
 inline double arc_tangent(double y, double x) noexcept {
     return std::atan2(y, x) * DEGREES;
 }
-/// `angle` plus the multiple of 360 degrees that brings it nearest to `near`.
+/// `angle` plus the multiple of 360 degrees that makes it nearest to `near`.
 inline double nearest_turn(double angle, double near) noexcept {
     return angle + 360.0 * std::round((near - angle) / 360.0);
 }

@@ -10,7 +10,7 @@ Vector Hexapod::row(Group group, std::size_t strut) const noexcept {
     return {get(i), get(i + 1), get(i + 2)};
 }
 
-/// Size of the platform, to which rotations are scaled.
+/// Size of the platform, by which rotations are scaled to lengths.
 double Hexapod::size() const noexcept {
     double sum = 0;
     for (std::size_t i = 0; i < STRUTS; ++i) {
@@ -19,7 +19,7 @@ double Hexapod::size() const noexcept {
     return std::max(sum / STRUTS, 1e-9);
 }
 
-/// The angle between the cross pieces of both joints about the axis of the strut's screw.
+/// The angle between the cross pieces of both joints, about the screw axis of the strut.
 double Hexapod::correction_of(std::size_t strut, const Vector &along, const Rotation &turn) const noexcept {
     const double lead = get(SCREW_LEAD);
     if (lead == 0.0) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A hexapod (Stewart platform): joints 0 to 5 are the lengths of six struts between base and platform. A, B
 // and C are roll, pitch and yaw of the platform. The inverse is the length of each strut (Merlet, Parallel
-// Robots, 3.1); the forward kinematics iterates from the last pose (Newton, Merlet 4.4). Struts with screws
-// between two cardan joints rotate as the platform tilts, and so grow by their lead: `correction`, while a
-// joint's axes are less than 90 degrees apart.
+// Robots, 3.1); the forward kinematics iterates from the last pose (Newton, Merlet 4.4). A strut with a screw
+// between two cardan joints rotates when the platform tilts, which changes its length by the lead of the
+// screw. `correction` accounts for this while the axes of a joint are less than 90 degrees apart.
 #pragma once
 
 #include "kinematics/frame.hh"

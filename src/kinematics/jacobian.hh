@@ -13,7 +13,7 @@ struct Jacobian {
 };
 
 /// Central differences over +-`step` [machine units and degrees] of the axes in `axes` (bit per axis; other
-/// columns are 0). SINGULAR or UNREACHABLE if an adjacent pose is. `joints` belong to the pose.
+/// columns are 0). SINGULAR or UNREACHABLE if an adjacent pose has this status. `joints` belong to the pose.
 Status joints_by_pose(const Kinematics &model, const Pose &pose, const double *joints, unsigned axes,
                       double step, Jacobian &out) noexcept;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Forward and inverse kinematics. Pure: parameters are in the object, no statics; every call returns a
-// status, none aborts.
+// Forward and inverse kinematics. Parameters are in the object, not in static variables. Every call returns a
+// status and never aborts.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ using geometry::Pose;
 enum class Status : std::uint8_t {
     OK,
     UNREACHABLE,  ///< no solution; outputs are unchanged
-    /// A solution exists, but several meet here or there are infinitely many. The machine may be stopped here
-    /// and its position is kept, but no path may pass through.
+    /// A solution exists, but several solutions coincide or there are infinitely many. The machine may be
+    /// stopped at this pose and keeps its position, but no path may pass through it.
     SINGULAR,
 };
 /// True when there is a solution.
@@ -26,7 +26,7 @@ constexpr bool isAnswered(Status status) noexcept {
 }
 enum class Kind : std::uint8_t { IDENTITY, FORWARD_ONLY, INVERSE_ONLY, BOTH };
 
-/// Which axis each joint drives, for machines whose joints are axes; -1 drives none.
+/// The axis that each joint drives, for machines whose joints are axes; -1: no axis.
 struct IdentityMap {
     std::array<std::int8_t, MAX_JOINTS> axis_of_joint{};
     int num_joints = 0;
@@ -54,7 +54,7 @@ struct LinearJoints {
     constexpr bool operator==(const LinearJoints &) const noexcept = default;
 };
 
-/// Joint n is axis n.
+/// Joint n drives axis n.
 constexpr LinearJoints joints_like_axes() noexcept {
     LinearJoints out;
     out.joints = out.axes = (1U << geometry::AXIS_COUNT) - 1U;
@@ -80,26 +80,27 @@ class Kinematics {
   public:
     virtual Kind kind() const noexcept = 0;
     /// The pose of these joint positions. `pose` holds the last pose: iterating models start there, and of
-    /// several poses the one on its side is chosen. Coordinates that no joint drives are not changed.
+    /// several solutions the one on the same side is chosen. Coordinates that no joint drives are not
+    /// changed.
     virtual Status forward(const double *joints, Pose &pose) const noexcept = 0;
     /// The joint positions of this pose. `joints` holds the last ones: of several solutions (elbow up or
-    /// down) the one on their side is chosen, and for an angle the nearest revolution.
+    /// down) the one on the same side is chosen, and for an angle the nearest revolution.
     virtual Status inverse(const Pose &pose, double *joints) const noexcept = 0;
     /// Not null when each joint is one axis: limits are then combined without a Jacobian.
     virtual const IdentityMap *identity() const noexcept { return nullptr; }
 
-    /// The linear joints and their slopes, with the current parameters. None when joints are axes.
+    /// The linear joints and their slopes, with the current parameters. Empty when joints are axes.
     virtual LinearJoints linear() const noexcept { return {}; }
 
     /// Side of a pose. Poses of different sides are separated by singular poses: above and below the motors,
-    /// or the assembly modes of a platform's struts. 0: the model has one side only, or the side depends on
+    /// or the assembly modes of a platform's struts. 0: the model has only one side, or the side depends on
     /// the joints.
     virtual int side(const Pose &) const noexcept { return 0; }
 
-    /// Null when there is one type only.
+    /// Null when there is only one type.
     virtual TypeSwitch *type_switch() const noexcept { return nullptr; }
 
-    /// False when calls share hidden state; then only the servo thread may call.
+    /// False when calls share hidden state. Then only the servo thread may call them.
     virtual bool isShareable() const noexcept { return true; }
 
   protected:

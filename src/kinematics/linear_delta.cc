@@ -22,7 +22,7 @@ Status LinearDelta::forward(const double *joints, Pose &pose) const noexcept {
         return Status::UNREACHABLE;
     }
     // The carriages are numbered clockwise as seen from above, so the effector is on the other side. It hangs
-    // from rods that lean down, which rails with large height differences do not allow.
+    // from rods that point down, which is not possible with large height differences of the carriages.
     const Vector place = meeting->below;
     const bool hanging = place.z <= joints[0] && place.z <= joints[1] && place.z <= joints[2];
     if (!hanging) {
@@ -47,8 +47,8 @@ Status LinearDelta::inverse(const Pose &pose, double *joints) const noexcept {
         least = std::min(least, rod.z / get(L));
         rods[static_cast<std::size_t>(i)] = rod;
     }
-    // With large height differences of the carriages the effector is above their plane. It gets there only
-    // through a singular pose with all rods in one plane, and forward() reports the other side.
+    // With large height differences of the carriages the effector is above their plane. It reaches this pose
+    // only through a singular pose with all rods in one plane, and forward() reports the other side.
     const double spread = spread_of(rods[0], rods[1], rods[2]);
     if (!isFinite(pose) || !(spread >= 0)) {
         return Status::UNREACHABLE;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A delta with linear carriages: three upright rails on a circle about Z, at 90, 210 and 330 degrees; the
 // effector hangs below the carriages on rods of one length. Joints 0 to 2 are the heights of the carriages, 3
-// to 8 = A B C U V W. Merlet, Parallel Robots, 2.3 (rods make the effector a point on three spheres).
+// to 8 = A B C U V W. Merlet, Parallel Robots, 2.3 (the rods keep the effector on three spheres).
 #pragma once
 
 #include "kinematics/frame.hh"

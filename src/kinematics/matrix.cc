@@ -15,7 +15,7 @@ Status Matrix::forward(const double *joints, Pose &pose) const noexcept {
     if (!isSound() || !areFinite(joints, geometry::AXIS_COUNT)) {
         return Status::UNREACHABLE;
     }
-    // Cramer's rule: cross products of rows are the columns of the inverse.
+    // By Cramer's rule, the cross products of the rows are the columns of the inverse.
     const Vector yz = cross(row(3), row(6));
     const Vector zx = cross(row(6), row(0));
     const Vector xy = cross(row(0), row(3));

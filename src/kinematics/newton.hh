@@ -13,21 +13,21 @@ namespace mw::kinematics {
 
 template <std::size_t N>
 struct StrutLengths {
-    Row<N> of{};     ///< [machine units]
+    Row<N> of{};     ///< strut lengths [machine units]
     Square<N> by{};  ///< derivatives by the N coordinates of a pose; angles are multiplied by the rim, so
-                     ///< that all are lengths
+                     ///< that all coordinates are lengths
 };
 
 struct NewtonTerms {
     double criterion = 0;  ///< permitted error of a strut in a solution [machine units]
     double max_error = 0;  ///< error above which the search fails [machine units]
     double limit = 0;      ///< maximum number of iterations
-    double rim = 1;        ///< size of the platform, to which rotations are scaled [machine units]
+    double rim = 1;        ///< size of the platform, by which rotations are scaled to lengths [machine units]
 };
 
-/// `Search` holds a pose and a step from there. `lengths_at(share)` returns the StrutLengths<N> at this
-/// fraction of the step; `go(share, step)` moves there, sets the next step and returns its length [machine
-/// units]. OK or SINGULAR: the solution is at `share` of the step.
+/// `Search` contains a pose and a step from this pose. `lengths_at(share)` returns the StrutLengths<N> at
+/// this fraction of the step; `go(share, step)` moves there, sets the next step and returns its length
+/// [machine units]. OK or SINGULAR: the solution is at `share` of the step.
 template <std::size_t N, class Search>
 Status find_platform(const double *joints, const NewtonTerms &terms, Search &search, double &share,
                      int &iterations) noexcept {
@@ -60,7 +60,7 @@ Status find_platform(const double *joints, const NewtonTerms &terms, Search &sea
             return Status::UNREACHABLE;
         }
         if (!is_same_side || miss > before) {
-            share *= 0.5;  // step too long
+            share *= 0.5;  // the step was too long
             continue;
         }
         share = std::min(1.0, STRIDE * terms.rim / std::max(search.go(share, step), 1e-300));

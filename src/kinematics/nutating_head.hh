@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Six axes: a rotary table under the work, and a head that turns about C, with a second axis in it that leans
-// from the vertical by the nutation angle (90 degrees: an ordinary fork). Joints 0 to 5 = X Y Z A B C.
-//   NutatingHeadOverA: the table turns about A, the second axis is B and leans from Z towards Y
-//   NutatingHeadOverB: the table turns about B, the second axis is A and leans from Z towards X
-// With all angles at 0 joints are axes. In the frame of the work the pose is where the tip of the tool is on
-// the work, which turns with the table; in that of the tool X, Y and Z run along a tilted plane across the
-// tool, whose head angles are parameters, and the table counts for nothing:
-//   work: p = r + k + T (j - r + head),   head = C (S (-l - t) - d),   k = d + l + t,   r = table's axis - d
-//   - l tool: p = Rz(-pre-rot) (S' (C' (j + d + l) - d) - l)
-// T: by the table's angle; C: by the primary angle about Z; S: by the secondary one about the leaning axis; '
-// the other way. l: from the spindle's nose to the pivot point; d: from the second axis to the first; t: the
-// tool. D. Mueller: Kinematic model for a 5axis mill with universal nutating head (2024).
+// Six axes: a rotary table under the work, and a head that rotates about C. The head has a second axis that
+// is inclined from the vertical by the nutation angle (90 degrees: an ordinary fork). Joints 0 to 5 = X Y Z A
+// B C.
+//   NutatingHeadOverA: the table rotates about A, the second axis is B and is inclined from Z towards Y
+//   NutatingHeadOverB: the table rotates about B, the second axis is A and is inclined from Z towards X
+// With all angles at 0 joints are axes. In the frame of the work the pose is the position of the tool tip on
+// the work, which rotates with the table. In the frame of the tool X, Y and Z are directions of a tilted
+// plane normal to the tool; the head angles of this plane are parameters, and the table has no effect:
+//   work: p = r + k + T (j - r + head),   head = C (S (-l - t) - d)
+//         k = d + l + t,   r = table's axis - d - l
+//   tool: p = Rz(-pre-rot) (S' (C' (j + d + l) - d) - l)
+// T: rotation by the table's angle; C: by the primary angle about Z; S: by the secondary angle about the
+// inclined axis; ' is the inverse. l: from the spindle nose to the pivot point; d: from the second axis to
+// the first; t: the tool. D. Mueller: Kinematic model for a 5axis mill with universal nutating head (2024).
 #pragma once
 
 #include "kinematics/frame.hh"

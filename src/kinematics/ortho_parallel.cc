@@ -9,7 +9,7 @@ namespace mw::kinematics {
 
 namespace {
 
-constexpr double NEAR = 1e-7;  ///< fraction of a length, or of a right angle, within which solutions meet
+constexpr double NEAR = 1e-7;  ///< fraction of a length, or of a right angle, within which solutions coincide
 
 /// Orientation of the lower arm: joint 0 about Z, joints 1 and 2 about the rotated Y.
 Rotation arm_of(const double *joints) noexcept {
@@ -27,7 +27,7 @@ Rotation hand_of(const double *joints) noexcept {
     return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
 }
 
-/// Joints 3 to 5. With the hand in line with the arm only the sum or difference of joints 3 and 5 is
+/// Joints 3 to 5. If the hand is in line with the arm, only the sum or difference of joints 3 and 5 is
 /// determined: joint 3 is kept.
 Status turn_wrist(const Rotation &hand, double side, double *joints) noexcept {
     const double off_line = std::hypot(hand.z.x, hand.z.y);
@@ -70,7 +70,7 @@ Status OrthoParallel::forward(const double *joints, Pose &pose) const noexcept {
     return Status::OK;
 }
 
-/// Joints 0 to 2 for a position of the wrist: joint 0 points to the wrist, then two arms reach it.
+/// Joints 0 to 2 for a position of the wrist: joint 0 points to the wrist, then the two arms reach it.
 Status OrthoParallel::place_wrist(const Vector &wrist, const Sides &sides, double *joints) const noexcept {
     const double upper = get(C2);
     const double size = std::abs(upper) + lower();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Industrial arms: six rotary joints [degrees], joints 1 and 2 parallel and perpendicular to joint 0, the
-// last three through one point. A, B and C are roll, pitch and yaw of the hand. Parameters and signs of M.
-// Brandstoetter, A. Angerer, M. Hofbaur, An Analytical Solution of the Inverse Kinematics Problem of
-// Industrial Serial Manipulators with an Ortho-parallel Basis and a Spherical Wrist (Austrian Robotics
+// axes of the last three through one point. A, B and C are roll, pitch and yaw of the hand. Parameters and
+// signs of M. Brandstoetter, A. Angerer, M. Hofbaur, An Analytical Solution of the Inverse Kinematics Problem
+// of Industrial Serial Manipulators with an Ortho-parallel Basis and a Spherical Wrist (Austrian Robotics
 // Workshop 2014).
 #pragma once
 
@@ -28,7 +28,7 @@ class OrthoParallel final : public Parametric<ORTHO_PARALLEL_PARAMETERS> {
     static constexpr int JOINTS = 6;
 
     Status forward(const double *joints, Pose &pose) const noexcept override;
-    /// Keeps the sides of shoulder, elbow and wrist in `joints`.
+    /// Keeps the configuration (shoulder, elbow and wrist) in `joints`.
     Status inverse(const Pose &pose, double *joints) const noexcept override;
 
   private:

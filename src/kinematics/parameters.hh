@@ -25,7 +25,7 @@ enum class PinKind : std::uint8_t {
 struct Parameter {
     const char *name;
     double start = 0;
-    const char *unit = "";  ///< "" for none
+    const char *unit = "";  ///< "" if there is none
     const char *doc = "";
     PinKind kind = PinKind::FLOAT;
 };

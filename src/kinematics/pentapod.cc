@@ -5,7 +5,7 @@
 
 namespace mw::kinematics {
 
-/// Size of the effector, to which rotations are scaled.
+/// Size of the effector, by which rotations are scaled to lengths.
 double Pentapod::size() const noexcept {
     double sum = 0;
     for (std::size_t i = 0; i < STRUTS; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A pentapod (Metrom): five struts hold an effector by rings that swivel about its axis, so that it has a
-// position and a direction, X Y Z A B, and no rotation about it. Joints 0 to 4 are the lengths of the struts.
+// A pentapod (Metrom): five struts hold an effector by rings that swivel about its axis. So it has a position
+// and a direction, X Y Z A B, but no rotation about its axis. Joints 0 to 4 are the lengths of the struts.
 // The axis of the effector points along Ry(B) Rx(A) z. The inverse is the distance of each base joint from
 // its ring (Merlet, Parallel Robots, 3.1, with the ring's nearest point as the joint); the forward kinematics
 // iterates from the last pose (Newton, Merlet 4.4).

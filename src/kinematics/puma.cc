@@ -9,7 +9,7 @@ namespace mw::kinematics {
 
 namespace {
 
-constexpr double NEAR = 1e-7;  ///< fraction of a length, or of a right angle, within which solutions meet
+constexpr double NEAR = 1e-7;  ///< fraction of a length, or of a right angle, within which solutions coincide
 
 /// Orientation of the frame of joint 2 relative to the base.
 Rotation arm_of(const double *joints) noexcept {
@@ -20,7 +20,7 @@ Rotation arm_of(const double *joints) noexcept {
     return {{c * c23, s * c23, -s23}, {-c * s23, -s * s23, -c23}, {-s, c, 0}};
 }
 
-/// Orientation of the hand in that frame.
+/// Orientation of the hand in the frame of joint 2.
 Rotation hand_of(const double *joints) noexcept {
     const double c4 = cosine(joints[3]);
     const double s4 = sine(joints[3]);
@@ -33,8 +33,8 @@ Rotation hand_of(const double *joints) noexcept {
             {-c4 * s5, c5, s4 * s5}};
 }
 
-/// Joints 3 to 5 from the hand relative to the lower arm. With the hand in line with the arm only the sum or
-/// difference of joints 3 and 5 is determined: joint 3 is kept.
+/// Joints 3 to 5 from the hand relative to the lower arm. If the hand is in line with the arm, only the sum
+/// or difference of joints 3 and 5 is determined: joint 3 is kept.
 Status turn_wrist(const Rotation &hand, double side, double *joints) noexcept {
     const double off_line = std::hypot(hand.z.x, hand.z.z);
     if (off_line < NEAR) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A Puma 560: six rotary joints [degrees], the last three through one point. A, B and C are roll, pitch and
-// yaw of the hand. Closed form of Craig, Introduction to Robotics, 4.7 (modified Denavit-Hartenberg rows 0 0
-// 0; -90 0 0; 0 A2 D3; -90 A3 D4; 90 0 0; -90 0 D6).
+// A Puma 560: six rotary joints [degrees], the axes of the last three through one point. A, B and C are roll,
+// pitch and yaw of the hand. Closed form of Craig, Introduction to Robotics, 4.7 (modified Denavit-Hartenberg
+// rows 0 0 0; -90 0 0; 0 A2 D3; -90 A3 D4; 90 0 0; -90 0 D6).
 #pragma once
 
 #include "kinematics/frame.hh"
@@ -23,7 +23,7 @@ class Puma final : public Parametric<PUMA_PARAMETERS> {
     static constexpr int JOINTS = 6;
 
     Status forward(const double *joints, Pose &pose) const noexcept override;
-    /// Keeps the sides of shoulder, elbow and wrist in `joints`.
+    /// Keeps the configuration (shoulder, elbow and wrist) in `joints`.
     Status inverse(const Pose &pose, double *joints) const noexcept override;
 
   private:

@@ -11,7 +11,7 @@ class Rose final : public Kinematics {
   public:
     Kind kind() const noexcept override { return Kind::BOTH; }
     Status forward(const double *joints, Pose &pose) const noexcept override;
-    /// On the axis every angle is a solution: the last one is kept, and the pose is SINGULAR.
+    /// On the axis every angle is a solution: the last angle is kept, and the pose is SINGULAR.
     Status inverse(const Pose &pose, double *joints) const noexcept override;
 };
 

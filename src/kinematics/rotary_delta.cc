@@ -16,7 +16,7 @@ double leg_angle(int leg) noexcept {
 }  // namespace
 
 Status RotaryDelta::forward(const double *joints, Pose &pose) const noexcept {
-    // Reduces the foot to a point: each knee moves inward by the foot's radius.
+    // Reduces the foot to a point: each knee is moved inward by the foot's radius.
     std::array<Sphere, 3> spheres;
     for (int i = 0; i < 3; ++i) {
         const Vector knee{get(PLATFORM) - get(FOOT) + get(THIGH) * cosine(joints[i]), 0,

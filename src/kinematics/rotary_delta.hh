@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A delta with rotary arms: three shoulders on a circle about Z, at 270, 30 and 150 degrees; a thigh rotates
-// down from each, shins carry the foot below. Joints 0 to 2 are the angles of the thighs below the
-// horizontal, outward [degrees], 3 to 8 = A B C U V W. Clavel, US patent 4,976,582; Zsombor-Murray,
+// down from each shoulder, and the shins carry the foot below. Joints 0 to 2 are the angles of the thighs
+// below the horizontal, outward [degrees], 3 to 8 = A B C U V W. Clavel, US patent 4,976,582; Zsombor-Murray,
 // Descriptive Geometric Kinematic Analysis of Clavel's Delta Robot (2004).
 #pragma once
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Five axes with a tilting rotary table: the table tilts about A (parallel to X) and turns about C on it; the
-// tool stays parallel to Z. Joints 0 to 4 = X Y Z A C.
+// Five axes with a tilting rotary table: the table tilts about A (parallel to X) and rotates about C, the
+// tool is always parallel to Z. Joints 0 to 4 = X Y Z A C.
 //   j = tilt + Rx(-A) (Rz(-C) p - tilt)
-// with p the programmed point on the work, angles positive where the tool turns positively about the work
-// (ISO 841: the table turns the other way), origin on the axis C, and `tilt` a point of the axis A.
+// with p the programmed point on the work, angles positive for a positive rotation of the tool about the work
+// (ISO 841: the table rotates in the opposite direction), origin on the axis C, and `tilt` a point of the
+// axis A.
 #pragma once
 
 #include "kinematics/kinematics.hh"

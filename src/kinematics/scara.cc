@@ -44,7 +44,7 @@ Status Scara::inverse(const Pose &pose, double *joints) const noexcept {
     const double sine_1 = side * std::sqrt((1.0 - cosine_1) * (1.0 + cosine_1));
     const double along = inner + outer * cosine_1;
     const double across = outer * sine_1;
-    // An arm with equal halves folded over its shoulder may point in any direction.
+    // An arm with equal halves that is folded over its shoulder may point in any direction.
     const double reach = std::hypot(x, y);
     const bool folded = reach < STRETCHED * (std::abs(inner) + std::abs(outer));
     const double elbow = nearest_turn(arc_tangent(sine_1, cosine_1), joints[1]);

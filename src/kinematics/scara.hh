@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A SCARA arm: two arms that rotate about vertical axes, a quill and a wrist. Joints 0 shoulder, 1 elbow
+// A SCARA robot: two arms that rotate about vertical axes, a quill and a wrist. Joints 0 shoulder, 1 elbow
 // [degrees], 2 quill (positive down), 3 wrist [degrees], 4 and 5 = A and B. C is the sum of the three angles.
 // Closed form of Craig, Introduction to Robotics, 4.4 (the planar arm of three joints).
 #pragma once
@@ -21,7 +21,7 @@ class Scara final : public Parametric<SCARA_PARAMETERS> {
   public:
     enum Index : std::size_t { D1, D2, D3, D4, D5, D6 };
     Status forward(const double *joints, Pose &pose) const noexcept override;
-    /// Keeps the side of the elbow in joints[1]; for a stretched arm the negative angle is chosen.
+    /// Keeps the side of the elbow as in joints[1]; for a stretched arm the negative angle is chosen.
     Status inverse(const Pose &pose, double *joints) const noexcept override;
 };
 

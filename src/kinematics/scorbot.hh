@@ -14,7 +14,8 @@ class Scorbot final : public Kinematics {
     static constexpr double SHOULDER_X_MM = 16, SHOULDER_Z_MM = 140, ARM_MM = 221;
 
     Kind kind() const noexcept override { return Kind::BOTH; }
-    /// Arms that reach back over the base axis are UNREACHABLE: X and Y would give the opposite base angle.
+    /// Arms that reach back over the base axis are UNREACHABLE, because X and Y would then correspond to the
+    /// opposite base angle.
     Status forward(const double *joints, Pose &pose) const noexcept override;
     /// Keeps the elbow up or down as in `joints`; for stretched arms elbow up is chosen.
     Status inverse(const Pose &pose, double *joints) const noexcept override;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double NEARLY_SINGULAR = 1e-4;
 
-/// The x that minimises the error of m x = left with a small x (Wampler's damped least squares, 1986).
+/// The x that minimises the error of m x = left while x is small (Wampler's damped least squares, 1986).
 Row<6> damped_step(const Square<6> &m, const Row<6> &left) noexcept {
     constexpr double DAMPING = 1e-3;
     Square<6> normal{};
@@ -39,7 +39,7 @@ Vector turn_between(const Rotation &from, const Rotation &to) noexcept {
     if (cosine_angle > 0) {
         return twice_sine * 0.5;
     }
-    // Rotation by 180 degrees: the axis is the vector that the sum of both keeps.
+    // For a rotation by 180 degrees the axis is the sum of a vector and its rotated image.
     const Vector sums[] = {from.x + to.x, from.y + to.y, from.z + to.z};
     const Vector *largest =
         std::max_element(std::begin(sums), std::end(sums),
@@ -49,7 +49,7 @@ Vector turn_between(const Rotation &from, const Rotation &to) noexcept {
 
 }  // namespace
 
-/// Rotation of each row of the table, with the contribution of the joint before it [degrees].
+/// Rotation of each row of the table [degrees]; includes the contribution of the joint before it.
 Row<Serial::JOINTS> Serial::angles_of(const double *joints) const noexcept {
     Row<JOINTS> out{};
     for (std::size_t i = 0; i < JOINTS; ++i) {
@@ -139,7 +139,7 @@ bool Serial::reach(const Place &target, Row<JOINTS> &angles, int &iterations, do
         double miss = 0;
         const Row<JOINTS> last = angles;
         pivot = approach(target, angles, miss);
-        // Only rounding errors are left when a small error no longer decreases.
+        // When a small error does not decrease, only rounding errors remain.
         const bool settled = miss < CLOSE || (miss < 1e-10 && miss >= 0.5 * before);
         if (settled) {
             angles = last;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Any arm of six rotary joints [degrees], described by modified Denavit-Hartenberg rows: to the next joint by
-// ALPHA about X, A along X, then the joint's angle about Z and D along Z (Craig, Introduction to Robotics,
-// 3.4). A, B and C are roll, pitch and yaw of the hand; joints 6 to 8 = U V W. The inverse iterates (Newton
-// on the six equations of the pose, the Jacobian from the joints' axes: Craig 5.7) along a straight line from
-// the last joint positions, so that elbows and wrists stay on their side.
+// Any arm of six rotary joints [degrees], described by modified Denavit-Hartenberg rows. The transformation
+// to the next joint is ALPHA about X, A along X, then the joint's angle about Z and D along Z (Craig,
+// Introduction to Robotics, 3.4). A, B and C are roll, pitch and yaw of the hand; joints 6 to 8 = U V W. The
+// inverse iterates (Newton on the six equations of the pose, the Jacobian from the joints' axes: Craig 5.7)
+// along a straight line from the last joint positions, so that the configuration of elbow and wrist does not
+// change.
 #pragma once
 
 #include "kinematics/frame.hh"

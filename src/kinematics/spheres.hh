@@ -15,12 +15,12 @@ struct Sphere {
 };
 
 struct Meeting {
-    Vector above, below;  ///< on the side of (c1 - c0) x (c2 - c0), and on the other side
-    double height = 0;    ///< of both points from the plane of the centres
+    Vector above, below;  ///< the point on the side of (c1 - c0) x (c2 - c0), and the point on the other side
+    double height = 0;    ///< distance of both points from the plane of the centres
 };
 
-/// None if the spheres do not meet, or their centres lie on a line. Differences of the sphere equations are
-/// planes; then one square root remains (trilateration, Fang 1986).
+/// Empty if the spheres do not meet, or their centres are on a line. Differences of the sphere equations are
+/// planes; one square root gives the two points (trilateration, Fang 1986).
 inline std::optional<Meeting> meeting_of(const std::array<Sphere, 3> &spheres) noexcept {
     const Vector &origin = spheres[0].centre;
     const Vector to_1 = spheres[1].centre - origin;
@@ -53,14 +53,14 @@ inline std::optional<Meeting> meeting_of(const std::array<Sphere, 3> &spheres) n
     return out;
 }
 
-/// How far three directions are from a common plane: 0 (coplanar) to 1 (orthogonal), with the sign of their
+/// Distance of three directions from a common plane: 0 (coplanar) to 1 (orthogonal), with the sign of their
 /// orientation.
 inline double spread_of(const Vector &a, const Vector &b, const Vector &c) noexcept {
     const double size = length(a) * length(b) * length(c);
     return size > 0 ? dot(cross(a, b), c) / size : 0.0;
 }
 
-/// Spread below which a pose of a machine on three legs is singular.
+/// Spread below which a pose of a machine with three legs is singular.
 inline constexpr double FLAT = 1e-7;
 
 }  // namespace mw::kinematics

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Six rotary joints of which the last three meet in one point: the first three position that point, the
-// wrist, and the others orient the hand. Header-only and realtime-safe.
+// Six rotary joints. The axes of the last three meet in one point, the wrist: the first three joints position
+// the wrist, the last three orient the hand. Header-only and realtime-safe.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 
 namespace mw::kinematics {
 
-/// The joints of a pose whose hand is `hand_length` from the wrist along its Z. `place(wrist, joints)`
-/// calculates joints 0 to 2, then `turn(hand, joints)` joints 3 to 5; both return a Status. Without a
-/// solution the joints are not changed.
+/// The joints for a pose of the hand, which is `hand_length` from the wrist along its Z. `place(wrist,
+/// joints)` calculates joints 0 to 2, then `turn(hand, joints)` joints 3 to 5; both return a Status. Without
+/// a solution the joints are not changed.
 template <class Place, class Turn>
 Status inverse_by_wrist(const Pose &pose, double hand_length, double *joints, const Place &place,
                         const Turn &turn) noexcept {

@@ -3,7 +3,8 @@
 // that tilt with the head. Joints 0 to 8 = X Y Z A B C U V W.
 //   x = (X cos C + Y sin C) - pivot sin B + U cos B - W sin B,  y = Y cos C - X sin C + V,
 //   z = Z - pivot (1 - cos B) + U sin B + W cos B
-// The inverse of LinuxCNC's module is the same; its forward side is not the inverse of that (measured).
+// The inverse kinematics is that of LinuxCNC's module. The forward kinematics of that module is not its
+// inverse; here it is.
 #pragma once
 
 #include "kinematics/frame.hh"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Five axes with a rotary table on a tilting one; the tool stays parallel to Z and programs are written in
-// coordinates of the work. The place of a letter is what the joints of that letter are driven to.
-//   XyzacTable: the table turns about C on one that tilts about A:  j = o + Rx(A) (Rz(C) (p - r) - o) + r
-//   XyzbcTable: the table turns about C on one that tilts about B:  j = o + Ry(B) (Rz(C) (p - r) - o) + r
-//   XyzabTable: the table turns about A on one that turns about B:
+// Five axes with a rotary table on a tilting table; the tool is always parallel to Z and programs use
+// coordinates of the work. The position of a letter's joints is j:
+//   XyzacTable: the table rotates about C on one that tilts about A:  j = o + Rx(A) (Rz(C) (p - r) - o) + r
+//   XyzbcTable: the table rotates about C on one that tilts about B:  j = o + Ry(B) (Rz(C) (p - r) - o) + r
+//   XyzabTable: the table rotates about A on one that rotates about B:
 //               j = t + Ry(-B) (o + Rx(-A) (p - r - o) - t) + r
-// r: where the axis of the table is; o: what the second axis is off it, with the length of the tool in Z; t:
-// that length alone. C-H She, R-S Lee: A Postprocessor Based on the Kinematics Model for General Five-Axis
-// Machine Tools (2000).
+// r: position of the table's axis; o: offset of the second axis from it, including the tool length in Z; t:
+// the tool length alone. C-H She, R-S Lee: A Postprocessor Based on the Kinematics Model for General
+// Five-Axis Machine Tools (2000).
 #pragma once
 
 #include "kinematics/frame.hh"
@@ -35,7 +35,8 @@ class TiltingTable final : public Parametric<TILTING_TABLE_PARAMETERS> {
     enum Index : std::size_t { X_ROT, Y_ROT, Z_ROT, X_OFFSET, Y_OFFSET, Z_OFFSET, TOOL };
 
     TiltingTable() noexcept { letters_.configure(TILT == geometry::AXIS_A ? "XYZAC" : "XYZBC"); }
-    /// Assigns a letter to each joint. False (and no change) unless it is a word of axes.
+    /// Assigns a letter to each joint. False (and no change) if the text has other characters than axis
+    /// letters.
     bool set_letters(const char *letters) noexcept { return letters_.configure(letters); }
     Status forward(const double *joints, Pose &pose) const noexcept override;
     Status inverse(const Pose &pose, double *joints) const noexcept override;

@@ -5,7 +5,7 @@
 
 namespace mw::kinematics {
 
-/// In the plane of the motors a step up cannot be distinguished from a step down.
+/// In the plane of the motors the joints are the same for a step up and a step down.
 Status Tripod::status_at(double z) const noexcept {
     const double size = std::abs(get(BX)) + std::abs(get(CX)) + std::abs(get(CY));
     return std::abs(z) > FLAT * size ? Status::OK : Status::SINGULAR;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A point held at three distances: joints 0 to 2 are its distances from (0, 0, 0), (Bx, 0, 0) and (Cx, Cy,
-// 0).
+// A tripod: joints 0 to 2 are the distances of a point from (0, 0, 0), (Bx, 0, 0) and (Cx, Cy, 0).
 #pragma once
 
 #include "kinematics/parameters.hh"
@@ -16,7 +15,7 @@ inline constexpr Parameter TRIPOD_PARAMETERS[] = {
 class Tripod final : public Parametric<TRIPOD_PARAMETERS> {
   public:
     enum Index : std::size_t { BX, CX, CY };
-    /// Z keeps the sign of the last pose; if that is 0, the point above the motors is chosen.
+    /// Z keeps the sign of the last pose; if that sign is 0, the point above the motors is chosen.
     Status forward(const double *joints, Pose &pose) const noexcept override;
     Status inverse(const Pose &pose, double *joints) const noexcept override;
     int side(const Pose &pose) const noexcept override;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints that are axes, in the order of a word of axis letters; a letter that occurs twice is a gantry.
+// Joints that are axes, in the order of a text of axis letters; a letter that occurs twice is a gantry.
 #pragma once
 
 #include "kinematics/kinematics.hh"
@@ -9,7 +9,7 @@ namespace mw::kinematics {
 class Trivial final : public Kinematics {
   public:
     /// Joint n drives axis letters[n], upper or lower case ("XYYZ"). False (and no change) for an empty or
-    /// too long word or a letter that is not an axis.
+    /// too long text or a letter that is not an axis.
     bool configure(const char *letters) noexcept;
 
     Kind kind() const noexcept override { return Kind::IDENTITY; }

@@ -32,7 +32,7 @@ constexpr Span TURN{-175, 175};
 constexpr Span TILT{-85, 85};
 constexpr double PI = 3.14159265358979323846;
 
-/// Inside, outside, or so near the edge that rounding decides.
+/// Inside, outside, or unknown when the distance from the edge is within rounding errors.
 Verdict verdict_of(double value, double low, double high, double margin) {
     if (value > low + margin && value < high - margin) {
         return Verdict::REACHABLE;
@@ -58,7 +58,7 @@ std::shared_ptr<Head> head_in(HeadFrame frame) {
     return head;
 }
 
-/// Machines that reach every pose.
+/// Adds the machines that reach every pose.
 void add_cartesian(std::vector<ModelCase> &out) {
     const std::vector<Span> nine{MM, MM, MM, TURN, TILT, TURN, MM, MM, MM};
     const auto add = [&](const char *name, std::shared_ptr<const Kinematics> model, const char *axes,
@@ -85,7 +85,7 @@ void add_cartesian(std::vector<ModelCase> &out) {
         nine);
     add("bridge_mill", with<BridgeMill>({250}), "XYZBCW", {MM, MM, MM, TILT, TURN, MM});
     add("bridge_mill_two_y", long_bridge, "XYZBCWYV", {MM, MM, MM, TILT, TURN, MM, MM, MM});
-    out.back().joints.clear();  // random joints of one letter would disagree
+    out.back().joints.clear();  // random positions for the joints of one letter would not match
     add("tilting_head", with<TiltingHead>({120}), "XYZABCUVW", nine);
     add("xyzac_table", with<XyzacTable>({10, -20, 30, 4, 5, -6, 70}), "XYZAC", five);
     add("xyzbc_table", with<XyzbcTable>({10, -20, 30, 4, 5, -6, 70}), "XYZBC", five);
@@ -97,7 +97,7 @@ void add_cartesian(std::vector<ModelCase> &out) {
     add("head_over_b_in_plane", head_in<NutatingHeadOverB>(HeadFrame::TOOL), "XYZABC", six);
 }
 
-/// Machines that hold a point by three links, and the rose engine.
+/// Adds the machines that hold a point by three links, and the rose engine.
 void add_points(std::vector<ModelCase> &out) {
     ModelCase tripod{"tripod",
                      with<Tripod>({400, 150, 350}),
@@ -166,7 +166,7 @@ void add_points(std::vector<ModelCase> &out) {
                 verdict = Verdict::UNREACHABLE;
             }
         }
-        return verdict;  // the configuration of the legs is not known here
+        return verdict;  // this judge does not know the configuration of the legs
     };
     out.push_back(std::move(rotary));
 }
@@ -258,7 +258,7 @@ void add_arms(std::vector<ModelCase> &out) {
     serial.are_angles_rpy = true;
     serial.iterating = true;
     serial.judge = [](const Pose &p) {
-        // Which poses it reaches on a straight line without passing a singular pose is not known here.
+        // This judge does not know which poses can be reached on a straight line without a singular pose.
         return puma_verdict(p, 0) == Verdict::UNREACHABLE ? Verdict::UNREACHABLE : Verdict::UNKNOWN;
     };
     out.push_back(std::move(serial));

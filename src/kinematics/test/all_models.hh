@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every model with a geometry, the ranges of its joints and poses, and a judge that determines the reachable
-// poses independently of the model. The suite of every_model_test.cc runs over this list.
+// Every model with a geometry, the ranges of its joints and poses, and an independent judge of the reachable
+// poses. every_model_test.cc tests all models in this list.
 #pragma once
 
 #include <functional>

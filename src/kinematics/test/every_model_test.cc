@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Properties of every model: forward and inverse kinematics undo each other on the side of the joints,
-// without a discontinuity; solutions exist, and rejected poses are out of reach. MW_KINS_POSES sets the
-// number of random poses (a tenth of it for iterating models).
+// Properties of every model: inverse and forward kinematics return the original joints without a
+// discontinuity; solutions exist, and rejected poses are out of reach. MW_KINS_POSES sets the number of
+// random poses (a tenth of it for iterating models).
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -51,7 +51,7 @@ class EveryModel : public testing::TestWithParam<ModelCase> {
     int axis(std::size_t i) const { return geometry::axis_of_letter(GetParam().axes[i]); }
     const Kinematics &model() const { return *GetParam().model; }
 
-    /// Distance of two poses: lengths directly, angles of an orientation as arc length at the machine's size.
+    /// Distance of two poses: lengths as they are, angles as arc length at the machine's size.
     double distance(const Pose &p, const Pose &q) const {
         double most = 0;
         for (std::size_t i = 0; i < GetParam().axes.size(); ++i) {
@@ -88,7 +88,7 @@ class EveryModel : public testing::TestWithParam<ModelCase> {
     bool isSmooth(const Pose &from, const Joints &at_from, const Pose &to, int depth) const {
         Joints at_to = at_from;
         if (model().inverse(to, at_to.data()) != Status::OK) {
-            return true;  // unreachable: no path passes here
+            return true;  // not reachable: no path passes through this pose
         }
         double most = 0;
         for (std::size_t j = 0; j < MAX_JOINTS; ++j) {
@@ -146,8 +146,8 @@ TEST_P(EveryModel, UndoesItselfFromAPoseAndRefusesOnlyWhatIsOutOfReach) {
         Pose back = beside(pose, 0.01);
         Status returned = model().forward(joints.data(), back);
         if (returned == Status::UNREACHABLE && GetParam().iterating) {
-            // A hundredth of the machine's size is far for an iteration near a singular pose; a servo cycle
-            // is not.
+            // Near a singular pose an iteration may not converge over a hundredth of the machine's size. The
+            // travel of one servo cycle is much shorter.
             ++too_far;
             back = beside(pose, 1e-4);
             returned = model().forward(joints.data(), back);
@@ -192,8 +192,8 @@ TEST_P(EveryModel, UndoesItselfFromJointsOnTheirSide) {
             ++singular;
             continue;
         }
-        // Near a singular pose small rounding errors of the pose are large ones of the joints: compare the
-        // pose.
+        // Near a singular pose small rounding errors of the pose cause large errors of the joints, so the
+        // pose is compared.
         Pose again = pose;
         ASSERT_EQ(model().forward(back.data(), again), Status::OK);
         ASSERT_LT(distance(again, pose), 1e-7 * GetParam().size);
@@ -285,7 +285,7 @@ TEST_P(EveryModel, DerivativesOfBothWaysAreInverse) {
                               pose_by_joints(model(), joints.data(), static_cast<int>(GetParam().home.size()),
                                              at, STEP, by_joints) == Status::OK;
         if (!is_found || steepest(by_pose) > 30 || steepest(by_joints) > 30) {
-            continue;  // the finite differences are inaccurate there
+            continue;  // the finite differences are inaccurate near a singular pose
         }
         ++checked;
         for (std::size_t i = 0; i < count; ++i) {
@@ -324,7 +324,7 @@ TEST_P(EveryModel, RefusesWhatIsNoNumber) {
     }
 }
 
-/// Corners, edges and centres of the ranges: grids contain round numbers that random poses miss.
+/// Uses corners, edges and centres of the ranges: grids contain round numbers that random poses miss.
 TEST_P(EveryModel, UndoesItselfOnAGrid) {
     const std::size_t count = std::min<std::size_t>(GetParam().axes.size(), 6);
     constexpr int STEPS = 5;
@@ -359,7 +359,8 @@ TEST_P(EveryModel, UndoesItselfOnAGrid) {
 INSTANTIATE_TEST_SUITE_P(Kinematics, EveryModel, testing::ValuesIn(all_models()),
                          [](const auto &one) { return one.param.name; });
 
-/// External offsets rely on this: an offset adds the same to these joints at every pose and moves no others.
+/// External offsets rely on linear joints: an offset adds the same value to these joints at every pose and
+/// moves no other joints.
 TEST_P(EveryModel, WhatItSaysIsLinearIsSo) {
     const LinearJoints linear = model().linear();
     for (int n = 0; n < draws() / 20; ++n) {

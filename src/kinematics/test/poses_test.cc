@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Poses calculated by hand: right angles, sums of lengths and 3-4-5 triangles in the dimensions of the
-// models, and the result where several solutions or none exist.
+// models, and the result when there are several solutions or none.
 #include <cmath>
 #include <vector>
 
@@ -66,7 +66,7 @@ TEST(HandPoses, APointOfTheTiltingAxisStaysWhereItIs) {
     table.set(XyzacTable::Y_OFFSET, 20);
     table.set(XyzacTable::Z_OFFSET, -30);
     expect_pair(table, {{7, 20, -30, 60, 0, 0}}, {7, 20, -30, 60, 0});
-    table.set(XyzacTable::TOOL, 50);  // with a tool the joints move its tip
+    table.set(XyzacTable::TOOL, 50);  // with a tool length the joints move the tool tip
     expect_pair(table, {{7, 20, 20, 60, 0, 0}}, {7, 20, 20, 60, 0});
 }
 
@@ -93,12 +93,12 @@ TEST(HandPoses, AForkSwingsTheToolAboutItsPivot) {
     // The tool hangs 100 below the pivot. 90 degrees about X rotate it to +Y, about Y to -X.
     expect_pair(head_with<NutatingHeadOverB>(90, 100), {{0, 0, 0, 90, 0, 0}}, {0, -100, -100, 90, 0, 0});
     expect_pair(head_with<NutatingHeadOverA>(90, 100), {{0, 0, 0, 0, 90, 0}}, {100, 0, -100, 0, 90, 0});
-    // With C rotated by 90 degrees before that, +Y becomes -X.
+    // If C is first rotated by 90 degrees, +Y becomes -X.
     expect_pair(head_with<NutatingHeadOverB>(90, 100), {{0, 0, 0, 90, 0, 90}}, {100, 0, -100, 90, 0, 90});
 }
 
 TEST(HandPoses, HalfATurnAboutAnAxisThatLeansBy45LaysTheToolLevel) {
-    // Rotated by 180 degrees about the bisector of Z and Y, -Z becomes -Y.
+    // A rotation by 180 degrees about the bisector of Z and Y changes -Z to -Y.
     expect_pair(head_with<NutatingHeadOverA>(45, 100), {{0, 0, 0, 0, 180, 0}}, {0, 100, -100, 0, 180, 0});
     expect_pair(head_with<NutatingHeadOverB>(45, 100), {{0, 0, 0, 180, 0, 0}}, {100, 0, -100, 180, 0, 0});
     auto longer = head_with<NutatingHeadOverA>(45, 80);
@@ -123,8 +123,8 @@ TEST(HandPoses, InATiltedPlaneZRunsAlongTheTool) {
     auto head = head_with<NutatingHeadOverA>(45, 100);
     head.set(NutatingHeadOverA::SECONDARY, 180);
     head.set_frame(HeadFrame::TOOL);
-    // The tool points to -Y, so +Y is away from the workpiece. The origin of the plane is at joints 0 with
-    // the head upright.
+    // The tool points to -Y, so +Y is away from the workpiece. The origin of the plane is the tool tip at
+    // joints 0 with the head upright.
     expect_pair(head, {{0, 0, 0, 0, 180, 0}}, {0, 100, -100, 0, 180, 0});
     expect_pair(head, {{0, 0, 10, 0, 180, 0}}, {0, 110, -100, 0, 180, 0});
     expect_pair(head, {{10, 0, 0, 0, 180, 0}}, {-10, 100, -100, 0, 180, 0});
@@ -206,7 +206,8 @@ TEST(HandPoses, AnIndustrialArmUprightAndStretchedAhead) {
     EXPECT_NEAR(pose[0], 25 + 365 + 80, 1e-12);
     EXPECT_NEAR(pose[2], 400 + 315 + 35, 1e-12);
     EXPECT_NEAR(pose[4], 90, 1e-6);
-    // Rotated to Y, upper arm ahead, lower arm down, hand bent to point ahead; 12 sideways.
+    // The arm is rotated to Y, with the upper arm ahead, the lower arm down and the hand bent ahead; 12
+    // sideways.
     arm.set(OrthoParallel::B, 12);
     const Joints bent{90, 90, 90, 0, -90, 0};
     pose = {};
@@ -217,7 +218,7 @@ TEST(HandPoses, AnIndustrialArmUprightAndStretchedAhead) {
     expect_pair(arm, pose, {90, 90, 90, 0, -90, 0});
 }
 
-/// A machine stopped at a singular pose stays stopped: its joints are kept.
+/// A machine that is stopped at a singular pose keeps its joint positions.
 TEST(HandPoses, WhereTheWristIsInLineItsTurnIsKept) {
     for (const double bend : {0.0, 180.0}) {
         Joints joints{10, -50, 20, 33, bend, 44};
