@@ -89,7 +89,7 @@ bool format_one(const std::string &path, FormatMode mode) {
     return written.has_value();
 }
 
-/// In the shell, blocks on one line are separated by "\n".
+/// Replaces "\n", which separates blocks in a word of the shell, by newlines.
 std::string with_newlines(const std::string &text) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {

@@ -8,7 +8,8 @@
 namespace mw::gcode {
 
 struct Explanation {
-    std::string text;  ///< several lines: the block, its words, the current modes, or why the block fails
+    std::string text;  ///< several lines: the block, its words, the current modes, or the reason why the
+                       ///< block fails
     bool isRefused = false;  ///< the interpreter rejects the line
 };
 

@@ -45,7 +45,7 @@ class Formatter {
     static std::string indented(const std::string &text, std::size_t level) {
         return text.empty() ? text : std::string(level * INDENT, ' ') + text;
     }
-    /// A `while` that ends a `do` closes; any other `while` opens.
+    /// A `while` that ends a `do` closes its loop; any other `while` opens a loop.
     bool endsDo(const detail::OWord &oword) const {
         return oword.kind == OKind::WHILE && !open_.empty() && open_.back().kind == OKind::DO &&
                open_.back().label == oword.label;

@@ -41,7 +41,7 @@ class NameList {
     std::uint32_t last_ = 0;
 };
 
-/// The programmed state of the spindles, and whether the next cut waits for one, by the rules of task.
+/// The programmed state of the spindles, and whether the next cut waits for a spindle, by the rules of task.
 class ProgrammedSpindles {
   public:
     struct Spindle {
@@ -67,7 +67,7 @@ class ProgrammedSpindles {
         at(one.spindle).isTurning = false;
         cut_waiting_ = cut_waiting_ && std::ranges::any_of(spindles_, &Spindle::isTurning);
     }
-    /// True if this move waits. A cut takes the wait, so later cuts do not wait.
+    /// True if this move waits for the spindle. Later cuts then do not wait.
     bool take_wait(const MoveSettings &move) {
         const bool awaited = cut_waiting_ && !move.isRapid;
         cut_waiting_ = cut_waiting_ && move.isRapid;
@@ -346,7 +346,7 @@ class Preview::Impl final : public MachineCanon, public World {
         const double factor = surface_speed_factor(state.speed, state.surface_unit);
         return factor < state.css_max_rpm * radius ? factor / radius : state.css_max_rpm;
     }
-    /// Adds the minimum time of a move, to find endless loops that move.
+    /// Adds the minimum time of a move. Used to find endless loops that contain moves.
     void mark_progress(const MoveSettings &settings, double length) {
         constexpr double FASTEST_MM_S = 1000.0;
         const double fastest = FASTEST_MM_S / mm_per_machine_unit();

@@ -21,10 +21,10 @@ enum class PreviewKind : std::uint8_t {
     ARC,
     PROBE,
     RIGID_TAP,    ///< to `end` and back to `start`
-    DWELL,        ///< of `value` [s]
-    TOOL_CHANGE,  ///< tool `number` is in the spindle from now on
+    DWELL,        ///< dwell of `value` [s]
+    TOOL_CHANGE,  ///< from now on tool `number` is in the spindle
     STOP,         ///< M0, M1 and M60: motion stops
-    PLANNER,      ///< G64 R: from now on planned with jerk limits when `number` is 1, without when 0
+    PLANNER,      ///< G64 R: from now on the path is planned with jerk limits (`number` 1) or without (0)
 };
 
 /// A move, or an event between moves. Poses are in the selected coordinates.
@@ -32,7 +32,7 @@ struct PreviewEvent {
     PreviewKind kind = PreviewKind::RAPID;
     bool by_machine = false;        ///< a move that the machine makes itself for a tool change
     bool spindle_awaited = false;   ///< motion waits before this move until the spindle is at speed
-    geometry::Pose start, end;      ///< equal when the event is not a move
+    geometry::Pose start, end;      ///< equal if the event is not a move
     geometry::Pose centre, normal;  ///< of an arc, as in ArcMove
     geometry::Pose tool_offset;     ///< active during a move; start and end contain it unless they are TIP
     double angle_rad = 0;
@@ -41,7 +41,7 @@ struct PreviewEvent {
     double spindle_rpm = 0;
     double value = 0;
     int number = 0;
-    int line = 0, sequence = 0, call_level = 0;  ///< as in BlockRef
+    int line = 0, sequence = 0, call_level = 0;  ///< line and call level as in BlockRef
     std::uint32_t file = 0;                      ///< see Preview::file
     std::uint32_t section = 0;                   ///< see Preview::section
 };
@@ -69,7 +69,7 @@ struct PreviewMachine {
 struct PreviewProgress {
     std::uint64_t blocks = 0, events = 0;
     std::uint64_t bytes = 0,
-                  bytes_in_all = 0;  ///< position in the main file; does not change in loops and calls
+                  bytes_in_all = 0;  ///< position in the main file; constant during loops and calls
 };
 
 struct PreviewOptions {
@@ -87,8 +87,8 @@ struct PreviewOptions {
 
 enum class PreviewEnd { DONE, FAILED, CANCELLED };
 
-/// Interprets one program. Memory is limited to a batch and the interpreter's own (gcode/README.md); the
-/// listener may be slow. One thread.
+/// Interprets one program. Memory is limited to one batch and the interpreter (gcode/README.md). The listener
+/// may be slow. One thread.
 class Preview {
   public:
     struct Listener {
@@ -99,7 +99,7 @@ class Preview {
         std::function<void(const SourcePlace &, std::string_view what)> unknown{};
     };
 
-    /// The arguments must outlive it.
+    /// The arguments must outlive the preview.
     Preview(PreviewMachine machine, gcode::ToolSource &tools, gcode::ParameterSource &parameters,
             PreviewOptions options, Listener listener);
     ~Preview();
@@ -113,7 +113,8 @@ class Preview {
     const PreviewProgress &progress() const;
     const std::string &file(std::uint32_t index) const;
     /// The innermost subroutine, or in the main program the text of the last comment (section, NAME); empty
-    /// at the beginning. Under cutter compensation the last move of a section may be counted in the next one.
+    /// at the beginning. Under cutter compensation the last move of a section may be counted in the next
+    /// section.
     const std::string &section(std::uint32_t index) const;
     std::string line_text(std::uint32_t file, int line) const;
     /// Position of the line that is being read.

@@ -38,7 +38,7 @@ class Run {
     Result<> read_ini();
     Result<> read_tools();
     void report_failure();
-    /// Plug-ins make all their calls themselves.
+    /// Does nothing, because a plug-in makes all calls itself.
     void reset_canon() {
         if (options_.plugin.empty()) {
             canon_->take(OnReset{});
@@ -103,10 +103,10 @@ Result<> Run::read_tools() {
     return {};
 }
 
-/// Larger writes than the library's default; line by line on a terminal.
+/// Uses larger writes than the library's default; on a terminal writes line by line.
 void buffer_output(std::FILE *out) {
     constexpr std::size_t SIZE = 65536;
-    static char buffer[SIZE];  // stdout uses it until the process ends
+    static char buffer[SIZE];  // stdout uses the buffer until the process ends
     if (::isatty(::fileno(out)) == 0) {
         std::setvbuf(out, buffer, _IOFBF, SIZE);
     }
@@ -121,7 +121,7 @@ Result<> Run::prepare() {
     }
     var_file_ = options_.var_file.empty() ? var_file_ : options_.var_file;
     world_.isBlockDelete = options_.isBlockDelete;
-    // LinuxCNC's standalone program takes the entry of index 1 as the tool in the spindle.
+    // LinuxCNC's standalone program uses the entry at index 1 as the tool in the spindle.
     world_.state.current_pocket = 1;
     settings_.initial_units = LengthUnits::MM;
     settings_.tap_order_of_rs274 = true;
@@ -152,8 +152,8 @@ Result<> Run::prepare() {
     return {};
 }
 
-/// True when errors have a separate stream or go to a terminal. In one file with the canon calls they are the
-/// two lines that programs expect there.
+/// True when errors have a separate stream or go to a terminal. If they share a file with the canon calls,
+/// they are printed as the two lines that programs expect.
 bool isForPeople() {
     struct stat out{}, err{};
     const bool known = ::fstat(STDOUT_FILENO, &out) == 0 && ::fstat(STDERR_FILENO, &err) == 0;
@@ -168,7 +168,7 @@ void Run::report_failure() {
         const std::string context = error.context();
         fmt::print(stderr, "{}{}{}\n", error.what.place.str(), context.empty() ? "" : "\n", context);
     }
-    // For scripts these two lines are printed without changes.
+    // Scripts receive these two lines without changes.
     const bool is_terminal = ::isatty(STDERR_FILENO) == 1;
     const std::string block = short_text(error.line_text);
     fmt::print(stderr, "{}\n{}\n", is_terminal ? printable(error.what.message) : error.what.message,

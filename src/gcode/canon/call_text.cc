@@ -8,7 +8,7 @@
 namespace mw::gcode {
 
 void append_argument(std::string &text, double value) {
-    std::array<char, FIXED4_SIZE> digits;  // initialised only where used
+    std::array<char, FIXED4_SIZE> digits;  // initialised only when used
     text.append(digits.data(), write_fixed4(digits, value));
 }
 

@@ -14,15 +14,15 @@ namespace mw::gcode {
 struct BlockRef {
     std::string_view file;
     int line = 0;        ///< from 1, in `file`
-    int sequence = 0;    ///< the N word, else `line`; the line number that operators see
+    int sequence = 0;    ///< the N word, else `line`; shown to operators as the line number
     int call_level = 0;  ///< 0 in the main program
     std::string_view text;
     bool isNumbered = false;  ///< the block has an N word
 };
 
 /// Positions and lengths are in program units (see UseLengthUnits) and program coordinates, that is before
-/// rotation, G5x, G92 and tool offsets, which have separate calls; angles in degrees. Calls neither block nor
-/// return anything: the interpreter reads the state of the machine from a `World`. `gcode::MachineFrame`
+/// rotation, G5x, G92 and tool offsets, which have separate calls; angles in degrees. Calls do not block and
+/// return nothing. The interpreter reads the state of the machine from a `World`. `gcode::MachineFrame`
 /// converts the calls to machine coordinates and units and passes them to a `MachineCanon`.
 class Canon {
   public:

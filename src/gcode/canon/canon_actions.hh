@@ -20,7 +20,7 @@ using tools::ToolEntry;
 /// G96 and G97.
 struct SetSpindleMode {
     int spindle = 0;
-    double css_max_rpm = 0;  ///< > 0: constant surface speed up to this [rev/min]; 0: constant speed
+    double css_max_rpm = 0;  ///< > 0: constant surface speed with this maximum [rev/min]; 0: constant speed
 
     static constexpr std::string_view NAME = "SET_SPINDLE_MODE";
     static constexpr std::tuple FIELDS{&SetSpindleMode::spindle, &SetSpindleMode::css_max_rpm};
@@ -71,7 +71,7 @@ struct OrientSpindle {
 /// M19 Q: waits until the spindle is oriented.
 struct WaitOrientComplete {
     int spindle = 0;
-    double timeout_s = 0;  ///< after this time it is an error
+    double timeout_s = 0;  ///< a longer time is an error
 
     static constexpr std::string_view NAME = "WAIT_ORIENT_COMPLETE";
 };
@@ -193,7 +193,7 @@ struct SetAnalogOutput {
 
 /// M66.
 struct WaitInput {
-    int index = 0;  ///< of a digital or an analog input
+    int index = 0;  ///< index of a digital or an analog input
     bool isAnalog = false;
     WaitKind kind = WaitKind::IMMEDIATE;
     double timeout_s = 0;
@@ -224,7 +224,7 @@ struct PalletShuttle {
     static constexpr std::tuple<> FIELDS{};
 };
 
-/// All motion ends: the file has ended without M2.
+/// Waits until all motion has ended. Called when the file ends without M2.
 struct Finish {
     static constexpr std::string_view NAME = "FINISH";
     static constexpr std::tuple<> FIELDS{};
@@ -233,7 +233,7 @@ struct Finish {
 /// A user M code M100 to M199.
 struct UserCode {
     int code = 100;
-    double p = 0, q = 0;  ///< its words; -1 when not programmed
+    double p = 0, q = 0;  ///< words of the code; -1 when not programmed
 
     static constexpr std::string_view NAME = "USER_DEFINED_FUNCTION";
     static constexpr std::tuple FIELDS{&UserCode::code, &UserCode::p, &UserCode::q};
@@ -290,7 +290,7 @@ struct CloseLog {
 /// (probeopen FILE), (probeclose): each successful probe from now on is written to the file, nine coordinates
 /// per line.
 struct LogProbes {
-    std::string path;  ///< empty: stop writing
+    std::string path;  ///< empty: ends writing
 
     static constexpr std::string_view NAME = "LOG_PROBES";
 };

@@ -14,8 +14,8 @@ CanonCall &CanonCall::operator=(const CanonCall &other) {
     return *this = CanonCall(other);
 }
 
-/// Constructs the alternative again: compiling an assignment for each pair of alternatives takes longer than
-/// all other code.
+/// Constructs the alternative again. An assignment operator for each pair of alternatives would take long to
+/// compile.
 CanonCall &CanonCall::operator=(CanonCall &&other) noexcept {
     if (this != &other) {
         std::destroy_at(this);

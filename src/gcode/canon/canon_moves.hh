@@ -94,7 +94,7 @@ struct UseToolLengthOffset {
     static constexpr std::string_view NAME = "USE_TOOL_LENGTH_OFFSET";
 };
 
-/// What feed rates are measured along.
+/// The coordinates along which feed rates are measured.
 struct SetFeedReference {
     FeedReference reference = FeedReference::XYZ;
 
@@ -102,8 +102,8 @@ struct SetFeedReference {
     static constexpr std::tuple FIELDS{&SetFeedReference::reference};
 };
 
-/// F. In inverse time mode (G93) it precedes each move, with the rate that follows from F and the length of
-/// the move.
+/// F. In inverse time mode (G93) it precedes each move, with the rate calculated from F and the length of the
+/// move.
 struct SetFeedRate {
     double rate = 0;  ///< [program units/min; under units per revolution program units/rev]
 
@@ -137,7 +137,7 @@ struct SetNaivecamTolerance {
 
 /// G64 R: the planner from now on.
 struct SetPlannerMode {
-    int type = 0;           ///< 0: trapezoidal; else jerk-limited
+    int type = 0;           ///< 0: trapezoidal, else jerk-limited
     double peak_scale = 0;  ///< fraction of the reachable speed in corners, 0 to 1
 
     static constexpr std::string_view NAME = "SET_PLANNER_MODE";
@@ -179,7 +179,7 @@ struct NurbsPoint {
     double weight = 1;
 };
 
-/// A curve in the selected plane; its first control point is the current position, its last one the end.
+/// A curve in the selected plane; the first control point is the current position, the last one is the end.
 struct NurbsFeed {
     std::vector<NurbsPoint> points;  ///< at least `order`
     int order = 3;                   ///< degree + 1: 2 to MAX_NURBS_ORDER

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A canon that keeps calls until their block has succeeded (and, under cutter compensation, until the
-// previous move has its final end), then passes them on in order. Can undo the calls of a failed block.
+// A canon that stores calls until their block has succeeded (under cutter compensation also until the end of
+// the previous move is final), then passes them on in order. Can undo the calls of a failed block.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class Program;
 
 class CanonQueue final : public Canon {
   public:
-    /// The block of the calls from now on; it is announced with its first call.
+    /// Sets the block of the following calls; the block is announced with its first call.
     void enter_block(const Program *program, int line, int sequence, bool isNumbered, int call_level);
 
     std::size_t size() const { return calls_.size(); }
@@ -42,7 +42,7 @@ class CanonQueue final : public Canon {
         }
     }
 
-    /// enter_block() names the blocks.
+    /// Not used: enter_block() sets the block.
     void begin_block(const BlockRef &) override {}
     void take(const CanonCall &call) override;
     /// As take(), for a type known at compile time.
@@ -57,12 +57,13 @@ class CanonQueue final : public Canon {
         int axis = 0;
         double value = 0;
     };
-    /// Changes the end of the moves from call `from` on; the two axes are those of the selected plane.
+    /// Changes the end of the moves, beginning with call `from`. The two axes are those of the selected
+    /// plane.
     void move_ends(std::size_t from, AxisEnd first, AxisEnd second);
 
   private:
     struct Block {
-        const Program *program = nullptr;  ///< null: calls of no block
+        const Program *program = nullptr;  ///< null: the calls belong to no block
         int line = 0, sequence = 0, call_level = 0;
         bool isNumbered = false;
     };

@@ -14,8 +14,8 @@ MachineCall &MachineCall::operator=(const MachineCall &other) {
     return *this = MachineCall(other);
 }
 
-/// Constructs the alternative again: compiling an assignment for each pair of alternatives takes longer than
-/// all other code.
+/// Constructs the alternative again. An assignment operator for each pair of alternatives would take long to
+/// compile.
 MachineCall &MachineCall::operator=(MachineCall &&other) noexcept {
     if (this != &other) {
         std::destroy_at(this);

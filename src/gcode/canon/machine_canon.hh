@@ -20,7 +20,7 @@ struct LineMove {
 /// A helix about `normal` through `centre`, in the XYZ (or UVW) space of machine coordinates.
 struct ArcMove {
     Pose end;
-    Pose centre;  ///< only the three axes of the arc's space count
+    Pose centre;  ///< only the three axes of the arc's space are used
     Pose normal;  ///< unit vector; right-handed: positive angles are counterclockwise when it points to the
                   ///< viewer
     double angle_rad = 0;  ///< total signed sweep, including full revolutions
@@ -41,12 +41,12 @@ struct TapMove {
     double scale = 1;  ///< speed of the return move relative to the first move
 };
 
-/// The tool offset from now on.
+/// The tool offset active from now on.
 struct UseToolOffset {
     Pose offset;  ///< [machine units, degrees]
 };
 
-/// The coordinate systems from now on, for status displays.
+/// The coordinate systems active from now on, for status displays.
 struct UseOffsets {
     int g5x_index = 1;
     Pose g5x, g92;  ///< [machine units, degrees]

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double MM_PER_INCH = 25.4;
 constexpr double FULL_TURN = 2.0 * std::numbers::pi;
-/// An angle below this between start and end of an arc means a full circle [rad].
+/// If start and end of an arc differ by less than this angle, it is a full circle [rad].
 constexpr double SAME_ANGLE = 1e-10;
 
 struct FeedLength {
@@ -162,11 +162,11 @@ MoveSettings MachineFrame::feed_settings(bool linear) const {
     if (feed_mode_ == FeedMode::UNITS_PER_REVOLUTION && synch_feed_ == 0.0) {
         out.feed_per_revolution = feed_;
         out.velocity_synched = true;
-        // The speed at one revolution per second; the planner multiplies by the spindle speed.
+        // The feed at one revolution per second; the planner multiplies it by the spindle speed.
         out.feed = feed_;
         return out;
     }
-    // Degrees per minute are not lengths: removes the length factor.
+    // Degrees per minute are not lengths, so the length factor is removed.
     out.feed = feed_ / SECONDS_PER_MINUTE / (linear ? 1.0 : length_factor());
     return out;
 }
@@ -257,7 +257,7 @@ void MachineFrame::convert(const RigidTap &call) {
     const Pose to = to_machine(end);
     const FeedLength way = feed_length(position_, to);
     target_->take(TapMove{to, feed_settings(way.linear), call.scale});
-    // The tool returns to the start: the position does not change.
+    // The tool returns to the start, so the position does not change.
 }
 
 void MachineFrame::follow(const StartSpeedFeedSynch &call) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double TINY = 1e-12;
 constexpr int MOST_HALVINGS = 14;
-constexpr int CHECKS = 8;  ///< points of a piece where its distance from the curve is checked
+constexpr int CHECKS = 8;  ///< number of points of a piece at which its distance from the curve is checked
 
 struct Vec {
     double x = 0, y = 0;
@@ -73,7 +73,7 @@ class Curve {
         return {end.x / end.w, end.y / end.w};
     }
 
-    /// The tangent seen from inside the span that begins at `span`; zero at a cusp.
+    /// The tangent within the span that begins at `span`; zero at a cusp.
     Vec tangent(double u, int span) const {
         constexpr double STEP = 1e-5;
         const double low = std::max<double>(u - STEP, span), high = std::min<double>(u + STEP, span + 1);
@@ -106,7 +106,7 @@ PlanePiece arc_between(Vec from, Vec tangent, Vec to) {
     if (std::fabs(bend) <= 1e-9 * std::max(std::sqrt(square), TINY) || square <= TINY * TINY) {
         return piece;
     }
-    const double radius = square / bend;  // > 0: to the left
+    const double radius = square / bend;  // > 0: curves to the left
     const Vec centre = from + normal * radius;
     piece.first_centre = centre.x;
     piece.second_centre = centre.y;
@@ -141,7 +141,7 @@ std::array<PlanePiece, 2> biarc(Vec from, Vec from_tangent, Vec to, Vec to_tange
     return {arc_between(from, from_tangent, middle), arc_between(middle, tangent * (1.0 / length), to)};
 }
 
-/// Distance of `p`, which lies beside it, from the piece that begins at `from`.
+/// Distance of `p`, a point beside the piece that begins at `from`, from this piece.
 double distance(Vec p, Vec from, const PlanePiece &piece) {
     const Vec to{piece.first_end, piece.second_end};
     if (piece.rotation != 0) {

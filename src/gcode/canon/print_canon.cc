@@ -114,7 +114,7 @@ void PrintCanon::write(const SetPlannerMode &call) {
     put(fmt::format("{}(type={}, peak_scale={:.6f})", call.NAME, call.type, call.peak_scale));
 }
 
-/// All moves of a program pass here: short texts are copied in overlapping blocks of a fixed size.
+/// All moves of a program use this function, so short texts are copied in overlapping blocks of a fixed size.
 template <class Call>
 void PrintCanon::write_straight(const Call &call) {
     constexpr std::size_t MOST = 2304;  // prefix, name, and six coordinates of at most 317 characters
@@ -127,7 +127,7 @@ void PrintCanon::write_straight(const Call &call) {
     at += Call::NAME.size();
     *at++ = '(';
     for (int i = 0; i < geometry::AXIS_U; ++i) {
-        // Most moves change few coordinates: the text of the others is reused.
+        // Most moves change only a few coordinates, so the text of the others is reused.
         Coordinate &known = coordinates_[static_cast<std::size_t>(i)];
         const auto bits = std::bit_cast<std::uint64_t>(call.end[i]);
         if (bits != known.bits || known.length == 0) {

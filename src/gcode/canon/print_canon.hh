@@ -55,7 +55,7 @@ class PrintCanon final : public Canon {
     void write(const SetAnalogOutput &call);
     void write(const PrintLine &call);
     void write(const CanonError &call);
-    /// The standalone program has no inputs and no probe: it does not wait.
+    /// The standalone program has no inputs and no probe, so it does not wait.
     void write(const WaitInput &) {}
     void write(const LogProbes &) {}
     /// Straight moves, the most frequent calls. [NAME and FIELDS as in write()]

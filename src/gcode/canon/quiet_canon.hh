@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A canon without effect, for checking whether a program can be interpreted.
+// A canon without effect, to check whether a program can be interpreted.
 #pragma once
 
 #include "gcode/canon/canon.hh"

@@ -22,7 +22,7 @@ constexpr GCode M(int number) {
 constexpr GCode word_code(char letter) {
     return static_cast<GCode>(detail::WORD_CODES + letter);
 }
-/// Words that act like codes.
+/// Words that are treated as codes.
 inline constexpr GCode WORD_F = word_code('f'), WORD_S = word_code('s'), WORD_T = word_code('t');
 
 /// `number` as number_of() returns it; `letter`: g, m, f, s or t.

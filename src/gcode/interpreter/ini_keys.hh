@@ -63,7 +63,7 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
     ini::ini_flag("DISPLAY", "LATHE", false, "the machine is a lathe: pictures show Z and X"),
 });
 
-/// Does not compile for a key that is not in the table above.
+/// The key must be in the table above; otherwise it does not compile.
 consteval const ini::IniKey &ini_key(std::string_view section, std::string_view name) {
     return ini::row_of(INI_KEYS, section, name);
 }

@@ -72,7 +72,7 @@ Settings settings_from_ini(ini::IniReader &ini) {
     out.subroutine_path.push_back(out.ini_folder);
     add_folders(ini, prefix, out.subroutine_path);
     add_folders(ini, ini_key("RS274NGC", "SUBROUTINE_PATH"), out.subroutine_path);
-    // Our probing programs, in the build folder or installed; a user's folders are searched first.
+    // Millwright's probing programs, in the build folder or installed; the user's folders are searched first.
     out.subroutine_path.push_back(program_folder() + "/../share/probing");
     out.subroutine_path.push_back(program_folder() + "/../share/millwright/nc_files/probing");
     add_folders(ini, prefix, out.user_m_path);

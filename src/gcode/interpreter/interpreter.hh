@@ -21,14 +21,14 @@ namespace mw::gcode {
 class ReadAhead;
 struct InterpreterState;
 
-/// How far the main program has been read.
+/// Position up to which the main program has been read.
 struct FilePlace {
     std::uint64_t bytes = 0, bytes_in_all = 0;
 };
 
 /// Restrictions for programs.
 struct ProgramLimits {
-    /// Calls of scripts fail: their effect is not known.
+    /// Calls of scripts fail, because their effect is not known.
     bool are_scripts_forbidden = false;
     /// The program may only operate the machine: a line that begins with ;py, is an error, and names of
     /// subroutines match no file outside the folders of subroutines.
@@ -40,13 +40,13 @@ struct NextLine {
     int line = 0;
     int main_line = 0;         ///< in the main program: that line, or the calling line
     bool in_call = false;      ///< in a subroutine or a remapped code
-    bool in_main_file = true;  ///< the line is one of the main program's file
+    bool in_main_file = true;  ///< the line belongs to the main program's file
 };
 
 /// The interpreter of RS-274/NGC.
 class Interpreter final : public ProgramInterpreter {
   public:
-    /// All references must outlive the interpreter.
+    /// The interpreter keeps the references; all objects must outlive it.
     Interpreter(Canon &canon, World &world, ToolSource &tools, ParameterSource &parameters,
                 Settings settings);
     ~Interpreter() override;
@@ -78,13 +78,13 @@ class Interpreter final : public ProgramInterpreter {
     int call_level() const override;
     bool isAtFileEnd() const override;
     bool isMoveHeld() const override;
-    /// After a failure: the block did not decide which block is next, so checks may continue after it.
+    /// After a failure: true if the block did not determine the next block, so that checks may continue.
     bool isContinuable() const;
     /// Syntax errors of the open file after a line, up to a maximum: for checks that cannot continue.
     std::vector<diagnostics::Diagnostic> syntax_errors(int after, int most);
-    /// The program has made the machine act for `seconds`.
+    /// Reports that the program has operated the machine for `seconds`.
     void mark_progress(double seconds);
-    /// A budget is used up: no more statements run.
+    /// True if a budget is exhausted, so that no more statements run.
     bool isBudgetSpent() const;
     FilePlace place_in_file() const;
     /// Name of the current subroutine, without brackets; empty in the main program.
@@ -97,9 +97,9 @@ class Interpreter final : public ProgramInterpreter {
     NextLine next_line() const;
     /// Modes and parameters.
     const InterpreterState &state() const;
-    /// Only at the top level, as after abort().
+    /// Restores a state. Only at the top level, as after abort().
     void restore(const InterpreterState &kept);
-    /// Entries of the tool table that the next synch() will have: they have been sent already.
+    /// Announces entries of the tool table that have been sent already; the next synch() reads them.
     void know_tools(const std::map<int, ToolEntry> &entries);
     /// The state as bytes, for another process; an error names a state that cannot be packed.
     Result<std::string> pack_state() const;
@@ -110,7 +110,7 @@ class Interpreter final : public ProgramInterpreter {
     /// For machines that read ahead of what they execute.
     ReadAhead &read_ahead();
 
-    /// Restrictions for programs and MDI lines from now on.
+    /// Restrictions for all following programs and MDI lines.
     ProgramLimits &limits();
 
   private:

@@ -26,9 +26,10 @@ struct InterpreterState {
 
     /// `sequence`: number of the last executed block.
     ActiveCodes active_codes(int sequence) const;
-    /// G33 and G33.1 are the motion mode.
+    /// True if the motion mode is G33 or G33.1.
     bool isThreading() const;
-    /// Why a run cannot start at the next line although all lines before it are known; empty: it can.
+    /// The reason why a run cannot start at the next line although all lines before it are known; empty if it
+    /// can.
     std::string why_no_start() const;
 };
 

@@ -17,7 +17,8 @@ namespace {
 Result<PluginFactory> factory_in(const std::string &path) {
     constexpr char HINT[] =
         "a plug-in is compiled against gcode/interpreter/program_interpreter.hh of this version";
-    // Never closed: canon records may refer to its text, and its code must outlive its objects.
+    // The library is never closed, because canon records may refer to its text, and its code must outlive its
+    // objects.
     void *const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) {
         return fail(fmt::format("cannot load the interpreter {}: {}", path, ::dlerror()), {}, HINT);

@@ -9,8 +9,9 @@
 
 namespace mw::gcode {
 
-/// `name` unchanged when absolute; otherwise in $EMC2_HOME/lib/linuxcnc, then beside our own modules. A file
-/// that is not a plug-in of this version is rejected (LinuxCNC's own plug-ins have another interface).
+/// An absolute `name` is used unchanged; otherwise it is searched in $EMC2_HOME/lib/linuxcnc, then in the
+/// folder of our own modules. A file that is not a plug-in of this version is rejected (LinuxCNC's own
+/// plug-ins have another interface).
 Result<std::unique_ptr<ProgramInterpreter>> open_plugin(const std::string &name, const PluginParts &parts);
 
 }  // namespace mw::gcode

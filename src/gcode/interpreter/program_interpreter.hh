@@ -22,7 +22,7 @@ enum class Step {
     SYNC,         ///< the caller must let queued work finish, then call synch() and step() again
     PROGRAM_END,  ///< M2 or M30
     FILE_END,     ///< the closing % or the end of the file
-    FAILED,       ///< see error(); the block has changed nothing
+    FAILED,       ///< the block has failed and changed nothing; see error()
 };
 
 /// The active codes in the form of LinuxCNC's status.
@@ -37,14 +37,15 @@ class ProgramInterpreter {
   public:
     virtual ~ProgramInterpreter() = default;
 
-    /// Reads the parameter file (RS274NGC_VAR); a missing file is an empty one. Errors name line and column.
+    /// Reads the parameter file (RS274NGC_VAR); a missing file is treated as empty. Errors name line and
+    /// column.
     virtual Result<> load_parameters(const std::string &) { return {}; }
-    /// Writes it atomically, with the numbers that the file had and the required ones.
+    /// Writes the file atomically, with the required numbers and all others that the file contained.
     virtual Result<> save_parameters(const std::string &) const { return {}; }
-    /// The value of #number; 0 where there are no parameters.
+    /// The value of #number; 0 if the interpreter has no parameters.
     virtual double parameter(int) const { return 0.0; }
 
-    /// Call before the first program.
+    /// Called before the first program.
     virtual Result<> begin() = 0;
     /// Reads a file; its lines are executed by step().
     virtual Result<> open(const std::string &path) = 0;
@@ -68,7 +69,7 @@ class ProgramInterpreter {
     virtual int call_level() const { return 0; }
     /// The open file has no more lines.
     virtual bool isAtFileEnd() const = 0;
-    /// Cutter compensation keeps the last move until the next one, or G40, determines its end.
+    /// True if cutter compensation keeps the last move until the next move, or G40, determines its end.
     virtual bool isMoveHeld() const { return false; }
     /// Warnings of begin().
     virtual const std::vector<std::string> &warnings() const {
@@ -77,7 +78,7 @@ class ProgramInterpreter {
     }
 };
 
-/// Objects that a plug-in uses; all references outlive it.
+/// Objects that a plug-in uses; all of them outlive it.
 struct PluginParts {
     Canon &canon;
     World &world;

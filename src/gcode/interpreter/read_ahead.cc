@@ -52,7 +52,7 @@ void ReadAhead::mark_executed(std::uint64_t number) {
     }
 }
 
-/// The calls of the executed step end with the program, as do calls that were read later.
+/// The calls of the executed step, and all later ones, end with the program.
 void ReadAhead::return_to_executed() {
     flow_.abort();
     if (!isRecording()) {

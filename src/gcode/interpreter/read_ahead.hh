@@ -22,23 +22,23 @@ class Flow;
 /// One thread.
 class ReadAhead {
   public:
-    /// Both must outlive it.
+    /// Both objects must outlive the read-ahead.
     ReadAhead(detail::Executor &executor, detail::Flow &flow) : executor_(executor), flow_(flow) {}
 
-    /// Everything read is executed; records the changes of later steps.
+    /// Begins recording the changes of later steps; everything read so far is executed.
     void begin();
-    /// Records nothing until the next begin().
+    /// Ends recording until the next begin().
     void stop();
-    /// The current state is the state after step `number`.
+    /// Stores the current state as the state after step `number`.
     void note(std::uint64_t number);
     /// The machine has reached step `number`.
     void mark_executed(std::uint64_t number);
     /// Restores modes, offsets and parameters of the executed step; calls and loops end.
     void return_to_executed();
     ActiveCodes executed_codes() const { return executed_->active_codes(0); }
-    /// Content of the parameter file as of the executed step.
+    /// Content of the parameter file at the executed step.
     std::string parameter_text() const;
-    /// The last line has no words: it is blank, only a comment, or skipped.
+    /// True if the last line has no words: it is blank, only a comment, or skipped.
     bool isLineEmpty() const;
 
   private:

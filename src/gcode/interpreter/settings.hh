@@ -24,8 +24,8 @@ struct ScriptSettings {
     std::vector<std::string> path_append;   ///< folders searched last
     bool reloading = false;                 ///< run the top-level script again when its file has changed
     int log_level = 0;
-    /// Lines that begin with ;py, are run. False: they are errors, because any client that may send a line of
-    /// G-code would have all rights of the machine's user.
+    /// Lines that begin with ;py, are run. False: they are errors, because otherwise any client that may send
+    /// a line of G-code would have all rights of the machine's user.
     bool lines_run = true;
     SourcePlace place;  ///< position of the section, for errors
 };
@@ -53,11 +53,12 @@ struct CenterArcTolerance {
 };
 
 struct Settings {
-    std::vector<std::string>
-        subroutine_path;  ///< the INI file's folder, [DISPLAY]PROGRAM_PREFIX, [RS274NGC]SUBROUTINE_PATH, ours
+    std::vector<std::string> subroutine_path;  ///< the INI file's folder, [DISPLAY]PROGRAM_PREFIX,
+                                               ///< [RS274NGC]SUBROUTINE_PATH, Millwright's own folder
     std::vector<std::string>
         user_m_path;                 ///< [RS274NGC]USER_M_PATH and PROGRAM_PREFIX: folders of M100..M199
-    bool user_code_assumed = false;  ///< M100..M199 need no program: for previews on another computer
+    bool user_code_assumed = false;  ///< no program is required for M100..M199: for previews on another
+                                     ///< computer
     std::string startup_code;        ///< [RS274NGC]RS274NGC_STARTUP_CODE
     std::string on_abort_command;    ///< [RS274NGC]ON_ABORT_COMMAND: task runs it after each abort
     bool g92_persistence_disabled = false;
@@ -65,14 +66,14 @@ struct Settings {
     bool hal_readable = true;  ///< [RS274NGC]HAL_PIN_VARS: #<_hal[name]>
     bool fanuc_sub_disabled = false;
     bool coordinate_system_kept = false;  ///< M2 and M30 do not select G54
-    double max_velocity_mm_s = 0;         ///< threads that need more are rejected; 0: unknown
+    double max_velocity_mm_s = 0;         ///< threads that need a higher speed are rejected; 0: unknown
     CenterArcTolerance center_arc_tolerance;
-    /// G64 P before the first G64; 0: maximum speed at any distance from the corners.
+    /// G64 P before the first G64; 0: maximum speed without a limit of the distance from the corners.
     double start_tolerance_mm = 0;
     bool is_lathe = false;
     RotaryAxes rotary;
     bool is_task = false;  ///< #<_task>: a machine runs the program
-    /// G74 and G84 in G18 and G19 print X Y Z in the order of LinuxCNC's rs274, which is not a tool path.
+    /// G74 and G84 in G18 and G19 print X Y Z in the order of LinuxCNC's rs274. This is not a tool path.
     bool tap_order_of_rs274 = false;
     bool tool_offset_retained = false;  ///< [RS274NGC]RETAIN_G43: M6 and M61 apply the new tool's G43
     BeforeToolChange tool_change;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The world of an interpreter without a machine: the position is the programmed one.
+// The world of an interpreter without a machine: its position is the programmed position.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ class Standalone : public World, public ToolSource, public ParameterSource {
 
     MachineSnapshot snapshot() const override { return state; }
     LengthUnits machine_units() const override { return units; }
-    /// LinuxCNC's standalone interpreter uses 0.03937007874016 inch per millimetre; where a coordinate lies
+    /// LinuxCNC's standalone interpreter uses 0.03937007874016 inch per millimetre; if a coordinate is
     /// half-way between two printed digits, the output depends on it.
     double mm_per_machine_unit() const override {
         constexpr double INCH_PER_MM = 0.03937007874016;

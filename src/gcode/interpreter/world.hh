@@ -46,12 +46,13 @@ class World {
     virtual int count_spindles() const = 0;
     virtual bool isBlockDeleteOn() const = 0;
     virtual bool isOptionalStopOn() const = 0;
-    /// Waiting points take no time because nothing moves (printing, checking). Scripts continue at once.
+    /// True if waiting points take no time because nothing moves (printing, checking). Scripts then continue
+    /// at once.
     virtual bool isSynchedAtOnce() const { return false; }
 };
 
-/// The interpreter's view of the tool table. Entry 0 is the tool in the spindle. One owner: io (or the
-/// standalone).
+/// The interpreter's view of the tool table. Entry 0 is the tool in the spindle. It has one owner: io, or the
+/// standalone program.
 class ToolSource {
   public:
     virtual ~ToolSource() = default;

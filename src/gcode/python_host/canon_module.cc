@@ -57,13 +57,13 @@ void def_fields(py::module_ &m, const char *name, Call preset, std::tuple<Fields
     });
 }
 
-/// A call by its name, with its fields as arguments; other fields are those of `preset`.
+/// Defines a call by its name, with its fields as arguments; all other fields are from `preset`.
 template <gcode::RegularCall Call>
 void def(py::module_ &m, const Call &preset = {}) {
     def_fields(m, name_of(preset).data(), preset, Call::FIELDS);
 }
 
-/// The same call with a second name.
+/// Defines the same call with a second name.
 template <gcode::RegularCall Call>
 void def_with_twin(py::module_ &m, const Call &preset = {}) {
     def(m, preset);
@@ -180,7 +180,7 @@ void define_spindles(py::module_ &m) {
 
 void define_tools(py::module_ &m) {
     def<gcode::SelectTool>(m);
-    // The selected tool is changed; the argument, its pocket, exists for compatibility.
+    // Changes to the selected tool. The argument, its pocket, exists only for compatibility.
     m.def(
         "CHANGE_TOOL", [](int) { with_canon([](Canon &canon) { canon.take(gcode::ChangeTool{}); }); },
         py::arg("slot") = 0);
@@ -197,7 +197,7 @@ void define_tools(py::module_ &m) {
         with_canon([&](Canon &canon) { canon.take(gcode::SetToolTableEntry{index, entry}); });
     });
     for (const char *name : {"START_CHANGE", "TURN_PROBE_ON", "TURN_PROBE_OFF"}) {
-        m.def(name, [] {});  // CHANGE_TOOL and STRAIGHT_PROBE include it
+        m.def(name, [] {});  // CHANGE_TOOL and STRAIGHT_PROBE include this wait
     }
 }
 
@@ -275,7 +275,7 @@ void define_rest(py::module_ &m) {
     }
 }
 
-/// Queries of the machine: as of the last synchronisation.
+/// Queries of the machine return its state at the last synchronisation.
 void define_questions(py::module_ &m) {
     m.def("GET_BLOCK_DELETE", [] { return current_view().world().isBlockDeleteOn(); });
     m.def("GET_OPTIONAL_PROGRAM_STOP", [] { return current_view().world().isOptionalStopOn(); });
@@ -289,7 +289,7 @@ void define_questions(py::module_ &m) {
     }
     m.def("GET_EXTERNAL_PROBE_TRIPPED_VALUE", [] { return machine().isProbeTripped ? 1 : 0; });
     m.def("GET_EXTERNAL_PROBE_VALUE", [] { return machine().isProbeTripped ? 1.0 : 0.0; });
-    // Result of the last awaited input; the default when there is none or it timed out.
+    // Result of the last awaited input; the default when no input was awaited or it timed out.
     m.def("GET_EXTERNAL_DIGITAL_INPUT", [](int, int missing) {
         const MachineSnapshot now = machine();
         return now.isInputTimedOut ? missing : (now.input_value != 0.0 ? 1 : 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The interpreter of the running script. Python's modules exist once per process, so this does too; a script
-// may use an interpreter only inside a call that the interpreter has made, in that thread.
+// The interpreter of the running script. There is one for the process, because Python's modules exist once
+// per process; a script may use an interpreter only inside a call that the interpreter has made, in that
+// thread.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,7 @@ namespace mw::python_host {
 /// script runs in this thread.
 gcode::InterpreterView &current_view();
 
-/// Makes `view` the current one during its lifetime; nests. Needs the GIL.
+/// Makes `view` the current interpreter during its lifetime. Scopes may be nested. Needs the GIL.
 class CurrentScope {
   public:
     explicit CurrentScope(gcode::InterpreterView &view);

@@ -8,7 +8,7 @@
 namespace mw::python_host {
 namespace {
 
-/// A script can catch the exception and continue: it is raised again after this time.
+/// Interval after which the exception is raised again, because a script can catch it and continue.
 constexpr std::chrono::milliseconds AGAIN{100};
 
 /// "file:line" of the innermost frame.

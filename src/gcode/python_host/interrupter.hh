@@ -24,9 +24,9 @@ class Interrupter {
     Interrupter(const Interrupter &) = delete;
     Interrupter &operator=(const Interrupter &) = delete;
 
-    /// With the GIL: a script runs in this thread from now on.
+    /// Requires the GIL. From now on a script runs in this thread.
     void enter();
-    /// With the GIL: the outermost script has ended. Drops a pending exception.
+    /// Requires the GIL. The outermost script has ended; drops a pending exception.
     void leave();
 
   private:
@@ -34,12 +34,12 @@ class Interrupter {
     void raise();
 
     gcode::ScriptStop &stop_;
-    unsigned long script_thread_ = 0;  ///< under the GIL; 0: none
+    unsigned long script_thread_ = 0;  ///< changed under the GIL; 0: no script runs
     std::atomic<bool> ending_{false};
     std::thread thread_;
 };
 
-/// The type of the exception. With the GIL.
+/// The type of the exception. Requires the GIL.
 py::handle script_ended();
 
 }  // namespace mw::python_host

@@ -49,7 +49,7 @@ const PythonHost *PythonHost::active = nullptr;
 int PythonHost::hosts = 0;
 int PythonHost::entries = 0;
 
-/// Scope of an entry from the interpreter: the GIL, the current view, and this host's modules.
+/// Scope of a call from the interpreter: the GIL, the current view, and this host's modules.
 class PythonHost::Entry {
   public:
     explicit Entry(const PythonHost &host) : scope_(*host.view_) {
@@ -79,8 +79,9 @@ class PythonHost::Entry {
   private:
     py::gil_scoped_acquire gil_;
     CurrentScope scope_;
-    Interrupter *interrupter_ = nullptr;  ///< of the outermost entry
-    py::object path_, main_;              ///< of the process, when Python is its own
+    Interrupter *interrupter_ = nullptr;  ///< interrupter of the outermost scope
+    py::object path_, main_;              ///< original sys.path and main module of the process, if Python is
+                                          ///< its own
 };
 
 /// A generator suspended at its yield.
@@ -110,7 +111,7 @@ class SuspendedPython final : public gcode::SuspendedScript {
 
   private:
     PythonHost &host_;
-    py::object generator_;  ///< None: a function returned INTERP_EXECUTE_FINISH
+    py::object generator_;  ///< None: a function has returned INTERP_EXECUTE_FINISH
     std::string label_;
     bool is_o_word_;
 };
@@ -176,7 +177,8 @@ bool PythonHost::isOwnModule(const py::handle &module) const {
     return false;
 }
 
-/// Removes this host's modules from sys.modules, so that another host loads its own of the same names.
+/// Removes this host's modules from sys.modules, so that another host loads its own modules of the same
+/// names.
 void PythonHost::stash() const {
     py::dict loaded = loaded_modules();
     py::dict own = modules_;
@@ -305,7 +307,7 @@ Result<> PythonHost::begin() {
 
 // --------------------------------------------------------------------------------------------- calling
 
-/// A callable of a module that the top-level script has imported; none when it does not exist.
+/// A callable of a module that the top-level script has imported; none if it does not exist.
 py::object PythonHost::find_function(const char *module, std::string_view name) const {
     const py::dict names = main_.attr("__dict__");
     const std::string text(name);
@@ -387,7 +389,8 @@ ScriptOutcome PythonHost::advance(const py::object &generator, const std::string
     }
 }
 
-/// Nothing, an INTERP_ code, a number (the value of an O word), or a text (an error).
+/// Converts the result of a function: nothing, an INTERP_ code, a number (the value of an O word), or a text
+/// (an error).
 ScriptOutcome PythonHost::number_outcome(const py::object &result, const std::string &label,
                                          bool is_o_word) const {
     if (result.is_none()) {

@@ -53,7 +53,8 @@ void redirect_streams() {
     sys.attr("stderr") = py::cast(new Stream(true), py::return_value_policy::take_ownership);
 }
 
-/// Disables functions that end the process at once: a script must not end the machine. Its own children may.
+/// Disables functions that end the process at once: a script must not end the machine. Its child processes
+/// may call them.
 void keep_machine_up() {
     py::exec(R"(
 import os as _os
@@ -115,7 +116,7 @@ std::vector<std::string> places_of(const py::error_already_set &error) {
         const py::object frame = frames[static_cast<std::size_t>(i)];
         const std::string file = py::str(frame.attr("filename"));
         if (file.ends_with("/scripts/interpreter.py") || file.starts_with("<frozen")) {
-            continue;  // our own code is irrelevant to the script's author
+            continue;  // our own code is of no interest to the author of the script
         }
         const std::string function = py::str(frame.attr("name"));
         out.push_back(fmt::format("{}:{}{}", file, std::string(py::str(frame.attr("lineno"))),

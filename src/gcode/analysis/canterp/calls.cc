@@ -20,7 +20,7 @@ class Arguments {
   public:
     Arguments(const Call &call, Plane in_plane) : plane(in_plane), call_(call), rest_(call.arguments) {}
 
-    const Plane plane;  ///< plane selected by earlier calls
+    const Plane plane;  ///< plane selected by the calls read so far
 
     std::string_view next_word() {
         const std::size_t begin = rest_.find_first_not_of(" \t,");
@@ -229,7 +229,7 @@ constexpr Row ROWS[] = {
     {UseToolLengthOffset::NAME, &tool_length_offset},
 };
 
-/// The next word of `line` from `at` on; moves `at` behind it.
+/// The next word of `line` from `at`; moves `at` after the word.
 std::string_view word_at(std::string_view line, std::size_t &at, std::string_view ends) {
     const std::size_t begin = line.find_first_not_of(BLANKS, at);
     if (begin == std::string_view::npos) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Canon calls as text: one row each.
+// Canon calls as text, one call per line.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ enum class Kind { NOTHING, CALL, BAD };
 /// NOTHING for blank lines.
 Kind take_apart(std::string_view line, Call &call);
 
-/// Makes the call; `plane` is the selected plane, which SELECT_PLANE changes. An error names the column.
+/// Calls the canon. `plane` is the selected plane; SELECT_PLANE changes it. An error names the column.
 Result<> make_call(const Call &call, Canon &canon, Plane &plane);
 
 }  // namespace mw::gcode::canterp

@@ -175,7 +175,7 @@ TEST_F(PreviewRun, EndsEndlessLoopsWithAnError) {
     EXPECT_NE(sink.all()[0].what.message.find("loop without end"), std::string::npos);
 }
 
-/// Such loops are found at once, with or without motion: nothing changes between passes.
+/// Endless loops are found at once, with or without motion, because nothing changes between passes.
 TEST_F(PreviewRun, FindsLoopsThatRepeatThemselves) {
     const struct {
         const char *program;
@@ -205,8 +205,8 @@ TEST_F(PreviewRun, FindsLoopsThatRepeatThemselves) {
         << sink.all().back().str();
 }
 
-/// Names the endless loop: not an inner one that ends, not an earlier one, and in a subroutine with the
-/// callers.
+/// The error names the endless loop: not an inner loop that ends, not an earlier loop, and in a subroutine
+/// with its callers.
 TEST_F(PreviewRun, NamesTheLoopThatDoesNotEnd) {
     const struct {
         const char *program;

@@ -27,7 +27,8 @@ struct ReturnValue {
 /// Reason of the next waiting point.
 struct Awaited {
     bool isProbe = false, is_input = false;  ///< results that the next synch() takes
-    bool is_tool_change = false;             ///< a script has changed the tool, so a waiting point is needed
+    bool is_tool_change = false;             ///< a script has changed the tool, so the machine must be
+                                             ///< synchronised
 };
 
 /// The M98 that the program has reached.

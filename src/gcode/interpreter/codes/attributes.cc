@@ -20,7 +20,7 @@ using Writer = void (*)(const Sources &sources, double value);
 struct Row {
     std::string_view name;
     Reader read;
-    Writer write = nullptr;  ///< null: read only
+    Writer write = nullptr;  ///< null: read-only
 };
 
 std::int64_t whole(int value) {

@@ -26,7 +26,7 @@ const Code *lookup(GCode code, const Remaps &remaps) {
 bool insert_code(const Code &code, std::uint32_t column, BlockValues &values) {
     const std::uint32_t bit = 1u << static_cast<unsigned>(exclusive_group(code.group));
     if (code.group == Group::MOTION && values.motion != nullptr) {
-        // G80 beside another motion code is redundant.
+        // A redundant G80 beside another motion code.
         if (code.id == MOTION_NONE) {
             return true;
         }

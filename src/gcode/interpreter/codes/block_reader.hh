@@ -22,7 +22,7 @@ struct BlockSources {
 
 /// Reads the words into `values`, which must be clear.
 bool read_words(const BlockView &view, const BlockSources &sources, BlockValues &values);
-/// Axis words belong to a code of the block that uses them, else to the current motion mode.
+/// Assigns the axis words to the code of the block that uses them, else to the current motion mode.
 bool choose_motion(BlockValues &values, GCode motion, const Remaps &remaps);
 /// Checks that each code has its required words, and each word a code that uses it.
 bool check_words(const BlockValues &values);

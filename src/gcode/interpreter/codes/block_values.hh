@@ -23,7 +23,7 @@ inline constexpr int ALL_SPINDLES = -1;
 struct BlockValues {
     /// `errors` receives the error of the block. Leaves the arrays uninitialised.
     explicit BlockValues(Fault &errors) : fault(&errors) {}
-    /// As a new object, without the cost of setting fields that are not read.
+    /// Sets the object to the state of a new object, without the cost of setting fields that are not read.
     void clear() {
         present = groups = 0;
         codes.clear();
@@ -37,7 +37,7 @@ struct BlockValues {
     std::array<std::uint32_t, LETTER_COUNT> column;
     StaticVector<ActiveCode, 32> codes;  ///< in the order of execution
     std::uint32_t groups = 0;            ///< bit per Group that has a code
-    const Code *motion = nullptr;        ///< programmed or implied
+    const Code *motion = nullptr;        ///< programmed code, or the current motion mode
     bool motion_implied = false;
     bool is_machine_coordinates = false;  ///< G53
 

@@ -14,7 +14,7 @@ CodeFunction keep_modes;
 
 // moves/moves.cc: G0, G1, G80, G33 and G33.1; G38.2 to G38.5, which change parameters and wait.
 CodeFunction move_straight, cancel_motion, move_with_spindle, move_probe;
-/// G53 has no action: it changes the meaning of the block's move.
+/// G53 has no action. It changes the coordinates of the block's move.
 CodeFunction note_machine_coordinates;
 // moves/arcs.cc: G2 and G3.
 CodeFunction move_along_arc;

@@ -54,7 +54,7 @@ struct CodeParts {
     ToolTable &tools;
     SavedModes &saved_modes;
     LatheCycles &lathe;
-    std::vector<NurbsPoint> &control_points;  ///< of the open NURBS
+    std::vector<NurbsPoint> &control_points;  ///< control points of the open NURBS
     Awaited &awaited;
     FanucCall &fanuc_call;
 

@@ -15,7 +15,7 @@ namespace mw::gcode::detail {
 struct Remap;
 
 /// Modal groups in the order of execution. A block may contain at most one code of each group; DWELL and
-/// NON_MODAL are one group with two places in that order.
+/// NON_MODAL are one group with two positions in that order.
 enum class Group : std::uint8_t {
     SPINDLE_MODE,
     FEED_MODE,
@@ -83,7 +83,7 @@ constexpr std::uint32_t letters(std::string_view text) {
     return set;
 }
 
-/// A row of the table. `words`: permitted letters, * for those of axes; `required`: those that must be there.
+/// A row of the table. `words`: permitted letters, * for the axes; `required`: letters that must be present.
 constexpr Code row(GCode id, Group group, std::string_view words, std::string_view required,
                    CodeFunction *run, std::string_view meaning, std::string_view word_texts = {}) {
     const bool axes = words.starts_with('*');

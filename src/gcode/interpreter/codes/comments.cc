@@ -50,7 +50,7 @@ Active split_comment(std::string_view comment) {
     return {};
 }
 
-/// Format of numbers: the last %d, %f or %.Nf in the comment; before that six decimals.
+/// Format of numbers: the last %d, %f or %.Nf in the comment, initially six decimals.
 struct NumberFormat {
     bool integer = false;
     int decimals = 6;

@@ -18,8 +18,8 @@ struct ShownValues {
     Names &names;
 };
 
-/// Makes the call of an active comment, or passes on the comment. `column` of its first character. False
-/// after setting the fault.
+/// Makes the call of an active comment, or passes on the comment. `column` is that of its first character.
+/// False after setting the fault.
 bool run_comment(std::string_view comment, std::uint32_t column, const ShownValues &shown, CanonQueue &canon,
                  Fault &fault);
 

@@ -25,7 +25,7 @@ BlockCodes codes_of(const BlockValues &values) {
     return out;
 }
 
-/// True for a block that is empty or only a straight move, which fails before it changes anything.
+/// True for a block that is empty or only a straight move; such a block fails before it changes anything.
 bool isStateSafe(const BlockValues &values, const State &state) {
     const bool straight = values.codes.size() == 1 && values.motion != nullptr && values.motion->id <= G(1) &&
                           !state.comp.isOn();
@@ -72,7 +72,7 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
         return false;
     }
     if (view.block->word_count == 0) {
-        return true;  // only settings and comments, as most lines of loops
+        return true;  // only settings and comments, as in most lines of loops
     }
     if (!choose_motion(values, modes.motion, remaps) || !check_machine_coordinates(values) ||
         !check_open_nurbs(values, modes) || !axis_check_.check(values, parts.world.axis_mask()) ||
@@ -83,7 +83,7 @@ bool Executor::run(const BlockView &view, std::string_view line_text) {
     return run_codes(values, 0);
 }
 
-/// Only the last comment of a block counts.
+/// Runs only the last comment of a block.
 bool Executor::run_last_comment(const BlockView &view, std::string_view line_text) {
     const Comment &last = view.arena->comments[view.block->first_comment + view.block->comment_count - 1u];
     const std::string_view comment = line_text.substr(last.begin, last.end - last.begin);
@@ -148,7 +148,7 @@ void Executor::begin_light_block() {
     outcome = Outcome::OK;
 }
 
-/// The modes is large, so blocks that do not change it are not copied.
+/// The modes are large, so they are copied only for blocks that change them.
 void Executor::keep_state() {
     if (!state_kept_) {
         before_ = modes;

@@ -22,7 +22,7 @@
 
 namespace mw::gcode::detail {
 
-/// Values of named parameters that scripts define.
+/// Supplies named parameters that scripts define.
 class ScriptNames {
   public:
     virtual ~ScriptNames() = default;
@@ -52,7 +52,8 @@ class Executor : public InterpreterState, public BuiltIns {
     /// Runs the rest of a block that a remapped code has interrupted.
     bool resume(const PendingBlock &pending);
 
-    // The parts beside the state. Each can undo the changes of a failed block; the state by a copy.
+    // The objects other than the state. Each can undo the changes of a failed block; the state is restored
+    // from a copy.
     ToolTable tools;
     CanonQueue canon;
     Remaps remaps;
@@ -64,7 +65,7 @@ class Executor : public InterpreterState, public BuiltIns {
     Awaited awaited;
     BlockPlace block_place;
     ScriptLevels script_levels;
-    std::vector<NurbsPoint> control_points;  ///< of the open NURBS
+    std::vector<NurbsPoint> control_points;  ///< control points of the open NURBS
     /// The parts as codes use them.
     CodeParts parts;
 
@@ -75,25 +76,26 @@ class Executor : public InterpreterState, public BuiltIns {
 
     /// Saves state and queue, so that rollback() can undo the block; commit() keeps its changes.
     void begin_block();
-    /// As begin_block() for a block that may change no state: code that changes it calls keep_state() first.
+    /// As begin_block(), for a block that may change no state. Code that changes the state calls keep_state()
+    /// first.
     void begin_light_block();
     void keep_state();
     void commit();
     void rollback();
-    /// Replays the queued calls that no later block can change.
+    /// Passes on the queued calls that no later block can change.
     void flush(Canon &target);
-    /// After an abort: clears everything that waits.
+    /// After an abort: removes all queued calls and pending results.
     void abort_block();
 
-    /// New local names and modes for a subroutine; pop_call() returns to the caller's and restores the modes
-    /// that M73 saved.
+    /// Begins the local names and modes of a subroutine. pop_call() returns to those of the caller and
+    /// restores the modes saved by M73.
     void push_call();
     bool pop_call(bool is_fanuc);
-    /// Returns to `depth` calls, without restoring the modes that M73 saved.
+    /// Ends calls until `depth` of them remain, without restoring the modes saved by M73.
     void drop_calls(std::size_t depth = 0);
 
     ActiveCodes active_codes() const { return InterpreterState::active_codes(block_place.sequence); }
-    /// Returns to a state; entries of the tool table and awaited results are forgotten.
+    /// Restores a state; entries of the tool table and awaited results are dropped.
     void restore(const InterpreterState &kept);
 
     // Values that programs and scripts read.

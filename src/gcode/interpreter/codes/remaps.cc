@@ -199,7 +199,8 @@ Result<> Reader::finish() {
             return done;
         }
     }
-    // A script reads the words of its block itself, so any word is permitted; axis words only with a G code.
+    // A script reads the words of its block itself, so any word is permitted, but axis words only with a G
+    // code.
     out_.code.words = (bit_of(LETTER_COUNT) - 1) & ~AXES;
     out_.code.usesAxes = letter_ == 'g';
     return {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Codes that are remapped to a subroutine or a script ([RS274NGC]REMAP): the lines, the running procedures,
-// and the block that one has interrupted.
+// and the block that a procedure has interrupted.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +29,8 @@ struct Remap {
     std::string name;  ///< in upper case: "M400", "G88.1"
     Code code;         ///< row in the table of codes
     int modal_group = 0;
-    std::string ngc;               ///< name of the subroutine; or
-    std::string function;          ///< or the script's function (py=, python=)
+    std::string ngc;               ///< name of the subroutine (ngc=), or
+    std::string function;          ///< name of the script function (py=, python=)
     std::string prolog, epilog;    ///< script functions around the subroutine
     std::string argspec;           ///< as written
     std::vector<RemapWord> words;  ///< in the order of the argspec
@@ -39,7 +39,7 @@ struct Remap {
     bool needs_speed = false;      ///< ^
     bool wants_line = false;       ///< n: the line number becomes #<n>
     SourcePlace place;
-    std::string refusal;  ///< why the line has no effect
+    std::string refusal;  ///< reason why the line has no effect
 
     bool needsScripts() const { return !function.empty() || !prolog.empty() || !epilog.empty(); }
     /// Name of the procedure in messages.
@@ -70,7 +70,7 @@ class Remaps {
     /// Reads the lines, once, before the first program. Errors name file, line and column.
     Result<> load(std::span<const RemapLine> lines);
     const std::vector<Remap> &all() const { return all_; }
-    /// Why lines have no effect.
+    /// Reasons why lines have no effect.
     const std::vector<std::string> &refused() const { return refused_; }
     /// The row of a remapped code; null for any other code, and while the code's own procedure runs.
     const Code *find(GCode code) const;
@@ -85,12 +85,12 @@ class Remaps {
     void count_builtin(GCode code);
     /// How often the procedure of the `nth` running remap (from 1) has used the built-in meaning of its code.
     int builtin_uses(int nth) const { return running_[static_cast<std::size_t>(nth) - 1].builtins; }
-    /// Why a remapped code has no meaning here; empty when that is not the reason.
+    /// Explains that a remapped code has no built-in meaning here; empty if that is not the reason.
     std::string recursion_text(GCode code) const;
 
     /// A block has reached a remapped code.
     void interrupt(PendingBlock block) { interrupted_ = std::move(block); }
-    /// That block, to continue after the procedure.
+    /// Returns the interrupted block, to continue it after the procedure.
     PendingBlock take_interrupted();
     void drop_interrupted() { interrupted_.reset(); }
 

@@ -14,8 +14,8 @@ namespace mw::gcode::detail {
 struct CodeParts;
 struct Fault;
 
-/// Saving or discarding modes takes effect at once and is undone when the block fails. Calls are not undone:
-/// a block that enters or ends a call commits its earlier changes.
+/// Saving or discarding modes takes effect at once and is undone when the block fails. Calls are not undone,
+/// because a block that enters or ends a call commits its earlier changes.
 class SavedModes {
   public:
     /// Number of nested calls; 0 in the main program.
@@ -24,7 +24,7 @@ class SavedModes {
         levels_.emplace_back();
         ++revision_;
     }
-    /// Ends the innermost call; returns the modes that M73 saved for its return.
+    /// Ends the innermost call; returns the modes that M73 saved for its return, if any.
     std::optional<State> pop_call();
     /// Ends calls until `depth` of them remain.
     void drop_calls(std::size_t depth);
@@ -34,7 +34,7 @@ class SavedModes {
     void forget() { change({std::nullopt, levels_.back().for_return}); }   ///< M71
     /// The modes that M72 restores; null when none are saved at this level.
     const State *saved() const { return levels_.back().modes ? &*levels_.back().modes : nullptr; }
-    /// Of a level (0: the main program). Bit 0: modes are saved; bit 1: M73 saved last.
+    /// Status of a level (0: the main program). Bit 0: modes are saved; bit 1: they were saved by M73.
     int status(std::size_t level) const;
 
     /// Changes with each modification.
@@ -54,12 +54,12 @@ class SavedModes {
         Level before;
     };
     void change(Level &&level);
-    /// Ended levels need no undo.
+    /// Drops the undo data of ended levels.
     void forget_undo();
 
     std::uint64_t revision_ = 0;
     std::vector<Level> levels_{1};
-    std::vector<Undo> log_;  ///< changes of the current block; its levels exist
+    std::vector<Undo> log_;  ///< changes of the current block; their levels exist
 };
 
 /// Makes saved modes the current ones, except positions, motion mode, tool and offsets of coordinate systems.

@@ -43,7 +43,7 @@ struct ToolModes {
     int selected_index = -1;  ///< index in the tool table; -1 none selected
     int in_spindle = 0;
     int index = 0;        ///< index in the tool table
-    Pose offset;          ///< of the tool in the spindle [machine units]
+    Pose offset;          ///< offset of the tool in the spindle [machine units]
     double diameter = 0;  ///< [machine units]
     double frontangle = 0, backangle = 0;
     int orientation = 0;

@@ -7,8 +7,8 @@
 
 namespace mw::gcode::detail {
 
-/// Relative error of a number of a program: decimal fractions have no exact double, and an expression adds to
-/// the error.
+/// Relative error of a number of a program: most decimal fractions are not exact in a double, and an
+/// expression increases the error.
 inline constexpr double FIGURE_ERROR = 4.0 * std::numeric_limits<double>::epsilon();
 
 /// Rounds `steps` up. A number within `error` of a whole number counts as whole, so that no step has zero

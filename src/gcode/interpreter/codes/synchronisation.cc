@@ -7,7 +7,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// Sets the tool in the spindle by its index in the table.
+/// Sets the tool in the spindle by its index in the tool table.
 void synch_tool(const MachineSnapshot &snapshot, const ToolTable &tools, ToolModes &tool) {
     const bool in_table = snapshot.current_pocket > 0 && snapshot.current_pocket < tools.count();
     const bool loaded = snapshot.tool_in_spindle > 0;

@@ -10,9 +10,10 @@ namespace mw::gcode::detail {
 namespace {
 
 constexpr long double DEGREE = std::numbers::pi_v<long double> / 180.0L;
-constexpr double LARGEST_REDUCED = 1e6;   // degrees; full revolutions are removed without rounding
-constexpr long double NEAR_ZERO = 1e-3L;  // where the rounding of the angle matters
-constexpr std::size_t TERMS = 10;         // up to 45 degrees the next one is below 1e-20
+// degrees; full revolutions of smaller angles are removed without rounding
+constexpr double LARGEST_REDUCED = 1e6;
+constexpr long double NEAR_ZERO = 1e-3L;  // below this the rounding of the angle matters
+constexpr std::size_t TERMS = 10;         // up to 45 degrees the next term is below 1e-20
 
 /// Coefficients of the Taylor series in x^2: 1/first!, -1/(first + 2)!, ...
 constexpr std::array<long double, TERMS> taylor(int first) {
@@ -43,7 +44,7 @@ long double sine(double degrees, int right_angles) {
     static constexpr auto SINE = taylor(1), COSINE = taylor(0);
     constexpr double RIGHT_ANGLE = 90.0;
     constexpr double ROUNDER =
-        0x1.8p52;  // doubles of this size are whole numbers, so a sum with it is rounded
+        0x1.8p52;  // doubles of this size are whole numbers, so adding it rounds to a whole number
     const double turns = (degrees / RIGHT_ANGLE + ROUNDER) - ROUNDER;
     const long double x = (degrees - turns * RIGHT_ANGLE) * DEGREE;
     const int quadrant = (static_cast<int>(turns) + right_angles) & 3;

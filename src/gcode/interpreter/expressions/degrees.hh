@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Sine, cosine and tangent of angles in degrees, rounded from extended precision: sin[30] is 0.5, and a
-// program that compares or rounds the value gets the same result as in LinuxCNC. Several times faster than
-// the library's functions in long double.
+// program that compares or rounds the value has the same result as in LinuxCNC. Several times faster than the
+// library's functions in long double.
 #pragma once
 
 namespace mw::gcode::detail {

@@ -14,7 +14,7 @@ namespace {
 constexpr double DEGREE = std::numbers::pi / 180.0;
 
 constexpr double WHOLE_TOLERANCE = 1e-4;
-constexpr double EQUAL_TOLERANCE = 1e-4;  // for EQ and NE
+constexpr double EQUAL_TOLERANCE = 1e-4;  // tolerance of EQ and NE
 
 double modulo(double a, double b) {
     const double rest = std::fmod(a, b);
@@ -85,7 +85,7 @@ bool Evaluator::value(const Arena &arena, NodeId id, double &out) const {
     case NodeKind::NAMED: {
         const std::optional<double> found = named(node.a);
         if (!found && !fault_.message.empty()) {
-            fault_.column = node.column;  // a script that computes the value has failed
+            fault_.column = node.column;  // a script that calculates the value has failed
             return false;
         }
         if (!found) {

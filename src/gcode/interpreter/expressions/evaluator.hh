@@ -18,7 +18,7 @@ class BuiltIns {
   public:
     virtual ~BuiltIns() = default;
     virtual bool isBuiltInName(std::string_view name) const = 0;
-    /// Nothing when it has no value (an INI key that does not exist).
+    /// Nothing when the parameter has no value (an INI key that does not exist).
     virtual std::optional<double> built_in(std::string_view name) const = 0;
     /// #5400 to #5428.
     virtual double built_in(int number) const = 0;
@@ -37,7 +37,7 @@ class Evaluator {
     std::optional<double> named(NameId name) const;
     bool isReadOnly(NameId name) const;
     bool isGlobal(NameId name) const;
-    /// In range for reading.
+    /// True if the number is in the range of readable parameters.
     static bool isNumber(double index) {
         int number = 0;
         return take_number(index, number);
@@ -54,7 +54,7 @@ class Evaluator {
         }
         return round_number(index, number);
     }
-    /// Sets the reason why take_number() was false, and returns false.
+    /// Sets the fault with the reason why take_number() was false, and returns false.
     static bool refuse_number(double index, std::uint32_t column, Fault &fault);
     double numbered(int number) const {
         return isBuiltInNumber(number) ? built_ins_.built_in(number) : parameters_.get(number);

@@ -18,7 +18,7 @@ namespace mw::gcode::detail {
 inline constexpr int PARAMETER_COUNT = 5603;  ///< numbers are 1 to 5602
 inline constexpr int ARGUMENT_COUNT = 30;     ///< #1 to #30 belong to the subroutine
 
-/// Numbers of parameters with a meaning. Lengths in machine units unless said.
+/// Numbers of parameters with a meaning. Lengths are in machine units unless stated.
 enum ParameterNumber : int {
     P_PROBE_RESULT = 5061,  // nine, program units
     P_PROBE_SUCCESS = 5070,
@@ -41,8 +41,8 @@ enum ParameterNumber : int {
     P_BUILD_LAST = 5428,
     P_DEBUG_SHOWN = 5599,        // 0: (debug,...) prints nothing
     P_TOOL_FAULT = 5600,         // 1 after the changer has reported a fault
-    P_TOOL_FAULT_REASON = 5601,  // its pin toolchanger-reason
-    P_VAR_FIRST = 31,            // kept in the parameter file
+    P_TOOL_FAULT_REASON = 5601,  // pin toolchanger-reason of the changer
+    P_VAR_FIRST = 31,            // first number stored in the parameter file
 };
 
 /// Parameters that the interpreter itself computes.
@@ -52,7 +52,7 @@ constexpr bool isBuiltInNumber(int number) {
            (number >= P_MACHINE_POSITION && number < P_MACHINE_POSITION + AXIS_NUMBERS);
 }
 
-/// One change of parameters, for repeating it on another set. An undo is also a change.
+/// One change of parameters, so that it can be repeated on another set. An undo is also a change.
 struct ParameterChange {
     enum class Kind : std::uint8_t {
         NUMBER,         ///< `number` becomes `value`
@@ -62,7 +62,7 @@ struct ParameterChange {
         FORGET_LOCAL,
         FORGET_NAMES,
         PUSH_CALL,
-        KEEP_ASIDE,  ///< up to `number`
+        KEEP_ASIDE,  ///< saves #31 up to `number`
         POP_CALL,
         POP_SHARING_CALL,
     };
@@ -106,18 +106,18 @@ class Parameters {
     /// Removes global names and names of the main program.
     void forget_names();
 
-    void push_call();  ///< new local names; saves #1 to #30
-    /// Sets #1 and following of the new call; rollback() does not undo it.
+    void push_call();  ///< Begins a call: new local names; saves #1 to #30.
+    /// Sets the new call's parameters from #1 on. rollback() does not undo this.
     void set_arguments(std::span<const double> given);
     /// For the new call: also saves #31 to #count.
     void keep_aside(std::size_t count);
-    /// Returns to the caller's values, #1 to #30 too unless they are `sharing`.
+    /// Restores the caller's values. #1 to #30 are also restored unless `sharing` is true.
     void pop_call(bool sharing);
     int depth() const { return static_cast<int>(depth_); }
     /// Names and values of a call level (0: the main program), and of all globals.
     std::vector<std::pair<NameId, double>> locals(int level) const;
     std::vector<std::pair<NameId, double>> globals() const;
-    /// #1 to #30 of the caller of that level.
+    /// #1 to #30 of the caller of a level.
     std::array<double, ARGUMENT_COUNT> saved_arguments(int level) const;
 
     void commit() { log_.clear(); }
@@ -136,7 +136,7 @@ class Parameters {
     Result<> load(const std::string &path);
     /// Parses a text in memory; `path` names it in errors. An error changes nothing.
     Result<> parse(std::string_view text, const std::string &path);
-    /// Text of the parameter file: the numbers that it had, and the required ones.
+    /// Text of the parameter file: the required numbers, and all others that the file contained.
     std::string text() const;
     Result<> save(const std::string &path) const;
 
@@ -144,7 +144,7 @@ class Parameters {
     struct Frame {
         std::vector<Named> locals;
         double arguments[ARGUMENT_COUNT] = {};
-        std::vector<double> more;  ///< the caller's #31 and following, for calls with more arguments
+        std::vector<double> more;  ///< the caller's parameters from #31 on, for calls with more arguments
     };
     struct Undo {
         enum class Kind { NUMBER, GLOBAL, LOCAL } kind = Kind::NUMBER;
@@ -154,7 +154,7 @@ class Parameters {
     };
 
     std::vector<double> values_;
-    std::vector<std::optional<double>> globals_;  ///< by NameId
+    std::vector<std::optional<double>> globals_;  ///< values by NameId
     std::vector<Frame> frames_;                   ///< frames above depth_ keep their memory for the next call
     std::size_t depth_ = 1;
     void record(const ParameterChange &change) {
@@ -167,7 +167,7 @@ class Parameters {
     std::vector<Undo> log_;
     bool recorded_ = false;
     std::vector<ParameterChange> changes_;
-    std::vector<int> file_numbers_;  ///< numbers that the parameter file had
+    std::vector<int> file_numbers_;  ///< numbers that the parameter file contained
 };
 
 }  // namespace mw::gcode::detail

@@ -17,7 +17,7 @@ struct CallRequest {
     std::array<double, ARGUMENT_COUNT> few{};  ///< missing arguments are 0
     std::vector<double> many;                  ///< all arguments when there are more
 
-    /// At least ARGUMENT_COUNT of them.
+    /// The span has at least ARGUMENT_COUNT arguments.
     std::span<double> arguments() { return many.empty() ? std::span<double>(few) : std::span<double>(many); }
     std::span<const double> arguments() const {
         return many.empty() ? std::span<const double>(few) : std::span<const double>(many);
@@ -25,7 +25,8 @@ struct CallRequest {
 };
 bool compute_call(const BlockView &view, const OWord &oword, const FlowParts &parts, CallRequest &out);
 bool call_sub(const CallRequest &request, const FlowParts &parts);
-/// Skips a definition that is reached from above; a definition inside a running subroutine is an error.
+/// Skips a definition that the program reaches line by line; a definition inside a running subroutine is an
+/// error.
 bool pass_definition(const OWord &oword, const FlowParts &parts);
 /// The value of an O- return or endsub.
 bool compute_return(const BlockView &view, const OWord &oword, const FlowParts &parts, ReturnValue &out);

@@ -130,7 +130,7 @@ Step Flow::end_of_lines() {
                                         : "File ended with no percent sign or program end");
 }
 
-/// The first % opens a program that begins with it, the second ends it. Any other % is an error of its line.
+/// The first % begins a program, the second % ends it. Any other % is an error of its line.
 Step Flow::percent() {
     const Place &here = levels_.here();
     if (here.line == here.program->first_content_line()) {
@@ -180,7 +180,7 @@ Step Flow::run_block(const BlockView &view) {
                              call_level};
     executor_.begin_light_block();
     if (scripts_.isOpen()) {
-        executor_.keep_state();  // scripts may change any state
+        executor_.keep_state();  // scripts may change any modes
     }
     if (block.error != NO_ID) {
         const SyntaxError &error = view.arena->errors[view.block->error];
@@ -201,7 +201,7 @@ Step Flow::after_block() {
         const Outcome outcome = executor_.outcome;
         executor_.outcome = Outcome::OK;
         if (outcome != Outcome::CALL_FANUC && outcome != Outcome::PROFILE) {
-            parts_.commit();  // both may still fail
+            parts_.commit();  // both steps may fail
         }
         if (script_calls_.isEndDue() && scripts_.depth() == 0) {  // a script has ended the program
             script_calls_.expect_end(false);
@@ -289,7 +289,8 @@ bool Flow::note_turn(const LoopTurn &turn) {
     if (budget_.isWatching()) {
         budget_.note_pass(pass);
     }
-    // Scripts and changed tool tables have state that is not compared here.
+    // Scripts and changed tool tables have state that is not compared here, so a loop with them is not
+    // reported.
     const bool all_seen = turn.conditional && !scripts_.isOpen() && !executor_.tools.hasChanges();
     if (!all_seen || !budget_.isRepeating(pass, executor_.modes, executor_.parameters)) {
         return true;
@@ -311,7 +312,7 @@ Step Flow::fail_here(std::string message) {
     return fail_block();
 }
 
-/// The outermost loop that has recently restarted is the endless one.
+/// The endless loop is the outermost loop that has recently restarted.
 Step Flow::fail_budget() {
     Place &here = levels_.here();
     here.line = here.next;
@@ -361,7 +362,8 @@ Step Flow::fail_block() {
         error_.line_text = std::string(here.program->line_text(line));
     }
     error_.called_from = levels_.callers();
-    here.next = levels_.isInCall() ? here.next : here.after;  // ignores a jump that failed half-way
+    // ignores a jump that failed after a part of its actions
+    here.next = levels_.isInCall() ? here.next : here.after;
     unwind(script_calls_.nested_base());
     return Step::FAILED;
 }

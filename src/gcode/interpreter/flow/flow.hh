@@ -29,14 +29,14 @@ class Flow {
     void abort();
 
     const diagnostics::Diagnostic &error() const { return error_; }
-    /// The failed block did not decide which block is next, so later blocks can still be checked.
+    /// True if the failed block did not determine the next block, so that later blocks can be checked.
     bool isContinuable() const { return continuable_; }
     const Levels &levels() const { return levels_; }
     const ProgramFiles &files() const { return files_; }
     const Scripts &scripts() const { return scripts_; }
     Scripts &scripts() { return scripts_; }
     LoopBudget &budget() { return budget_; }
-    /// The last line has no words and no script.
+    /// True if the last line has no words and no script.
     bool isLineEmpty() const { return line_empty_; }
 
     /// Opens the script host if it is needed; see Scripts::load().
@@ -61,7 +61,7 @@ class Flow {
     bool run_call(const BlockView &view, const OWord &oword);
     bool run_return(const BlockView &view, const OWord &oword);
     bool return_fanuc();
-    /// False when an endless loop restarts.
+    /// Counts a restart of a loop. False when the loop is endless.
     bool note_turn(const LoopTurn &turn);
 
     /// Runs a text and its calls on a separate level. False: a waiting point is due.

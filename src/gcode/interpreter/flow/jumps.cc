@@ -37,7 +37,7 @@ bool run_if(const BlockView &view, const OWord &oword, Place &here, const JumpVa
     if (oword.kind == OKind::ENDIF) {
         return find_before(program, here.line, {OKind::IF}) != 0 || fail_unmatched(oword, "if", here, values);
     }
-    if (oword.kind != OKind::IF) {  // reached from above: an earlier branch was taken
+    if (oword.kind != OKind::IF) {  // the program reached this line after an executed branch
         const int end = find_after(program, here.line, {OKind::ENDIF});
         here.next = end + 1;
         return (end != 0 && find_before(program, here.line, {OKind::IF}) != 0) ||
@@ -67,7 +67,7 @@ bool run_if(const BlockView &view, const OWord &oword, Place &here, const JumpVa
     return true;
 }
 
-/// At the start of a while loop, or at the end of a do loop.
+/// Runs the start of a while loop, or the end of a do loop.
 bool run_while(const BlockView &view, const OWord &oword, Place &here, const JumpValues &values,
                LoopTurn &turn) {
     bool is_true = false;
@@ -139,7 +139,7 @@ bool run_end_repeat(const OWord &oword, Place &here, const JumpValues &values, L
     return true;
 }
 
-/// break and continue of a loop with a condition.
+/// Runs break and continue of a loop with a condition.
 bool run_leave(const OWord &oword, Place &here, const JumpValues &values) {
     const Program &program = *here.program;
     const int opener = find_before(program, here.line, {OKind::WHILE, OKind::DO});
@@ -181,7 +181,7 @@ int find_before(const Program &program, int line, std::initializer_list<OKind> k
 
 bool fail_unmatched(const OWord &oword, std::string_view missing, const Place &here,
                     const JumpValues &values) {
-    // An invalid O word is the likely reason.
+    // An invalid O word is the probable reason.
     Program &program = *here.program;
     const bool after = missing.starts_with("end") || oword.kind == OKind::DO;
     const int bad = after ? program.find_bad_oword(here.line, program.count_lines() + 1)

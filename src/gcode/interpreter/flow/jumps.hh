@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// O words that select the next line: conditions and loops. Those of one label are linked in the order of the
-// file, so a jump follows that chain.
+// O words that select the next line: conditions and loops. O words with the same label are linked in the
+// order of the file, and a jump follows these links.
 #pragma once
 
 #include <initializer_list>
@@ -29,10 +29,11 @@ struct LoopTurn {
 /// line. False after setting the fault.
 bool run_jump(const BlockView &view, const OWord &oword, Place &here, const JumpValues &values,
               LoopTurn &turn);
-/// A jump across an invalid O word may have missed its end: false when this one did.
+/// Checks for invalid O words between two lines, where a jump may have missed its end. False if it has missed
+/// it.
 bool check_jumped_over(int from, const Place &here, Fault &fault);
 
-/// The next (or last) O word of one of these types with the label of the one in `line`; 0: none.
+/// The next (or last) O word of one of these types with the same label as the O word in `line`; 0: none.
 int find_after(const Program &program, int line, std::initializer_list<OKind> kinds);
 int find_before(const Program &program, int line, std::initializer_list<OKind> kinds);
 /// Sets the fault for a missing counterpart.

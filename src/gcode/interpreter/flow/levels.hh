@@ -62,11 +62,11 @@ struct Call {
     std::vector<Repeat> repeats;
     int sub_line = 0;
     int again = 0;                       ///< M98 L: number of remaining calls
-    int reported_line = 0;               ///< TEXT: line number from the script
-    std::unique_ptr<ScriptCall> script;  ///< for REMAP and SCRIPT
+    int reported_line = 0;               ///< TEXT level: line number set by the script
+    std::unique_ptr<ScriptCall> script;  ///< for levels REMAP and SCRIPT
 
     bool isInScript() const { return script != nullptr && script->isFunctionRunning(); }
-    /// The subroutine of a remapped code runs, and a function follows it.
+    /// True if the subroutine of a remapped code runs and an epilog follows it.
     bool isEpilogDue() const;
 };
 
@@ -81,7 +81,7 @@ class Levels {
     const std::string &file() const;
     /// The last line read; empty when there is none.
     std::string line_text() const;
-    /// The main program, null when none is open; its next line or the line of its call.
+    /// The main program, null when none is open; and its next line, or the line of its call.
     Program *main() const { return calls_.empty() ? here_.program : calls_.front().program; }
     int main_line() const { return calls_.empty() ? here_.next : calls_.front().line; }
 
@@ -98,14 +98,14 @@ class Levels {
     std::span<const Call> calls() const { return calls_; }
     /// Label of the innermost subroutine, NO_ID in the main program.
     NameId subroutine() const;
-    std::vector<SourcePlace> callers() const;  ///< the innermost first
+    std::vector<SourcePlace> callers() const;  ///< Positions of the callers, innermost first.
 
     /// Opens a program at its first line; null: closes.
     void open(Program *program);
-    /// Enters a call from the last line read, where the caller continues after it. The new level has no
+    /// Enters a call from the last line read. The caller continues after this line. The new level has no
     /// program yet.
     void enter(Call &&call);
-    /// Enters the text of a script from any level: `reported_line` is its line, 0: none.
+    /// Enters the text of a script from any level. `reported_line` is its line; 0: none.
     void enter_text(Program *text, int reported_line);
     /// Ends the innermost call and continues its caller.
     Call leave();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Limits for one loop or call of a program in checks. Counting restarts when the main program reaches a line
-// below all previous ones.
+// Limits for one loop or call of a program in checks. The counters restart when the main program reaches a
+// line after all previous lines.
 #pragma once
 
 #include <cstddef>
@@ -64,19 +64,20 @@ class LoopBudget {
         return spent_ || (statements_ > 0 && taken_ > statements_) || (idle_ > 0 && taken_idle_ > idle_) ||
                (seconds_ > 0 && taken_seconds_ > seconds_);
     }
-    /// Loops are recorded only in the last part of each budget: those running then are the endless ones.
+    /// True in the last part of each budget. Only then loops are recorded, because the loops running then are
+    /// the endless ones.
     bool isWatching() const {
         return isBounded() && (isLate(taken_, statements_) || isLate(taken_idle_, idle_) ||
                                (seconds_ > 0 && taken_seconds_ > seconds_ / 2));
     }
     void note_pass(const LoopPass &pass) { ++passes_[pass]; }
     /// For loops that only a condition ends: true if two consecutive passes began with the same values and
-    /// modes, so that all further passes are equal. Compares ever fewer passes.
+    /// modes, so that all further passes are equal. The interval between compared passes increases.
     bool isRepeating(const LoopPass &pass, const State &state, const Parameters &parameters);
-    /// The longest recorded loop around `line`.
+    /// The longest recorded loop that contains `line`.
     std::optional<LoopPass> loop_around(const Program *program, std::size_t depth, int line) const;
     int furthest_line() const { return furthest_line_; }
-    /// Text that names the used-up budget; nothing more is permitted until restart().
+    /// Text that names the exhausted budget. Until restart() no statement is accepted.
     std::string spend();
 
   private:

@@ -22,7 +22,7 @@ class ProgramFiles {
     Program *find_subroutine(std::string_view name, std::span<const std::string> folders, Names &names);
     /// A line of a file; empty when the file has not been read.
     std::string line_text(const std::string &file, int line) const;
-    /// Drops files, but not lines of MDI and texts of scripts.
+    /// Drops files, but keeps lines of MDI and texts of scripts.
     void close_files() { files_.clear(); }
 
     Program *keep_mdi(std::string_view line, Names &names);

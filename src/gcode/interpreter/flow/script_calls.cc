@@ -49,7 +49,7 @@ void settle_script(const FlowParts &parts) {
     parts.executor.outcome = outcome;
 }
 
-/// Calls a function for the innermost call.
+/// Calls a script function for the innermost call.
 bool ScriptCalls::call_handler(ScriptModule module, const std::string &name, const FlowParts &parts) {
     Levels &levels = parts.levels;
     Executor &executor = parts.executor;
@@ -78,7 +78,7 @@ bool ScriptCalls::call_handler(ScriptModule module, const std::string &name, con
     return take_outcome(index, std::move(outcome), parts);
 }
 
-/// Turns actions of scripts into a waiting point of the step.
+/// Ends the step with a waiting point if a script requires one.
 bool ScriptCalls::take_waiting_point(Executor &executor) const {
     if (!sync_due_ && !executor.awaited.is_tool_change) {
         return false;

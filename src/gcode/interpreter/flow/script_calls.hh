@@ -14,23 +14,22 @@ namespace mw::gcode::detail {
 
 class ScriptCalls {
   public:
-    // All of these return false after setting the fault.
+    // All functions return false after setting the fault.
     /// The block has reached a remapped code: runs its prolog, subroutine and epilog, or its function, before
     /// the rest.
     bool call_remap(const FlowParts &parts);
     /// An O- call of a script function.
     bool call_oword(const CallRequest &request, const FlowParts &parts);
-    /// A line that begins with ;py,
+    /// Runs a line that begins with ;py,
     bool run_text_line(const FlowParts &parts, InterpreterView &view);
-    /// The innermost level is a script: continues it after a waiting point, or after the blocks that it
-    /// executed.
+    /// Continues the innermost level, a script, after a waiting point or after the blocks that it executed.
     bool go_on(const FlowParts &parts);
     /// Leaves the innermost level with a value, after the epilog of a remapped code.
     bool leave(const ReturnValue &value, const FlowParts &parts);
 
-    /// Why a script cannot execute a block now; nothing when it can.
+    /// The reason why a script cannot execute a block now; nothing when it can.
     std::optional<std::string> refusal(const Scripts &scripts) const;
-    /// Begins a level with the text of a script; returns the argument of end_text().
+    /// Begins a level with the text of a script; returns the argument for end_text().
     std::size_t begin_text(std::string_view text, int line, const FlowParts &parts);
     void end_text(std::size_t outer_base) { nested_base_ = outer_base; }
     /// Levels below it belong to running scripts.

@@ -45,7 +45,7 @@ int group_number(Group group) {
     return -1;
 }
 
-/// The name in lower case without blanks; INI and HAL names keep theirs.
+/// The name in lower case without blanks; INI and HAL names are not changed.
 std::string folded(std::string_view name) {
     return name.find('[') == std::string_view::npos ? to_lower(name) : std::string(name);
 }
@@ -118,7 +118,7 @@ std::vector<std::string> ScriptView::script_names() const {
     return parts_.scripts.names();
 }
 
-/// Including those of the main program and the INI values that were read.
+/// Includes the names of the main program and the INI values that were read.
 std::vector<std::string> ScriptView::global_names() const {
     std::vector<std::string> out = predefined_names();
     for (const auto &[id, value] : executor_.parameters.globals()) {

@@ -17,7 +17,7 @@ namespace mw::gcode::detail {
 
 class ScriptView final : public InterpreterView {
   public:
-    /// Runs a block and what it calls, as InterpreterView::execute().
+    /// Runs a block and its calls, as InterpreterView::execute().
     using Execute = std::function<std::expected<bool, ScriptFault>(std::string_view text, int line)>;
     /// `parts` must outlive the view.
     ScriptView(const FlowParts &parts, Execute execute)

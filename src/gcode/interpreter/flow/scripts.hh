@@ -23,7 +23,7 @@ class Scripts final : public ScriptNames {
     /// names in the remaps exist. Errors name the position in the INI file. `view` must outlive the host.
     Result<> load(const Settings &settings, const Remaps &remaps, const BuiltIns &built_ins,
                   InterpreterView &view);
-    /// Opens the host if it is not open: `what`, at `place`, requires it.
+    /// Opens the host if it is not open. `what`, at position `place`, requires it.
     Result<> need(const std::string &what, const SourcePlace &place, const Settings &settings,
                   InterpreterView &view);
     Result<> begin();
@@ -44,7 +44,7 @@ class Scripts final : public ScriptNames {
     int depth() const { return depth_; }
     /// Number of calls, resumes and queries.
     std::uint64_t count_calls() const { return calls_; }
-    /// The script of a named parameter runs: it may only read.
+    /// True while the script of a named parameter runs; it may only read.
     bool isReadingName() const { return is_reading_name_; }
 
     bool hasName(std::string_view name) const override;

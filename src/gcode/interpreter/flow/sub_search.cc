@@ -9,7 +9,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// The path of the name leads outside the folder.
+/// True if the path of the name leads outside the folder.
 bool leadsOut(std::string_view name) {
     const std::filesystem::path path(name);
     return std::find(path.begin(), path.end(), "..") != path.end();
@@ -43,7 +43,7 @@ bool look_up(NameId label, FindLine find_line, const SubSearch &search, Sub &sub
     return found || look_in(load_file(label, search));
 }
 
-/// True when the main program has been searched to its end and ends with a percent sign there.
+/// True if the search reached the end of the main program and it ends with a percent sign.
 bool isEndReached(const Levels &levels) {
     const Program *const main = levels.main();
     return !levels.isMdi() && main->isPercentDelimited() && main->hasClosingPercent();

@@ -31,10 +31,10 @@ struct SubSearch {
 bool find_sub(NameId label, std::uint32_t column, const SubSearch &search, Sub &sub);
 /// A label without `sub`, for M98.
 bool find_fanuc_sub(NameId label, const SubSearch &search, Sub &sub);
-/// Hint for errors in a subroutine: its name, and where it was called.
+/// Hint for errors in a subroutine: its name and the position of its call.
 std::string called_from(NameId label, const Levels &levels, const Names &names);
 
-// Scripts compare these texts, including dots.
+// Scripts compare these texts, including the dots.
 inline constexpr char FANUC_TEXT[] = "Fanuc 'O....' subroutine must be called with 'M98'";
 inline constexpr char FANUC_END_TEXT[] = "Fanuc 'O....' subroutine definition must end with 'M99'";
 inline constexpr char OWORD_TEXT[] = "'O.... sub' subroutine must be called with 'O.... call'";

@@ -39,7 +39,7 @@ struct ScriptBlock {
     int m_count = 0;
     int line = 0;      ///< from 1
     int number = -1;   ///< the N word
-    int builtins = 0;  ///< how often the procedure of a remap has used the built-in meaning of its code
+    int builtins = 0;  ///< number of uses of a code's built-in meaning by the procedure that remaps it
     std::string comment, o_name;
     std::vector<double> params;  ///< arguments of an O word call
     std::optional<ScriptRemap> remap;
@@ -56,7 +56,7 @@ struct ScriptContext {
     std::vector<std::pair<std::string, double>> named;
 };
 
-/// Why a block that a script executed has failed.
+/// The reason why a block executed by a script has failed.
 struct ScriptFault {
     std::string message;
     int line = 0;
@@ -70,24 +70,24 @@ class InterpreterView {
     virtual ~InterpreterView() = default;
 
     /// Runs a block and the subroutines that it calls. True: done; false: a waiting point (probe, tool
-    /// change, input) is due, and the script must suspend before it executes more. `line` names the block; 0:
-    /// none.
+    /// change, input) is due, and the script must be suspended before it executes more blocks. `line` names
+    /// the block; 0: none.
     virtual std::expected<bool, ScriptFault> execute(std::string_view text, int line) = 0;
-    /// Canon calls of scripts, in program order; deliver() passes them on.
+    /// Canon for the calls of scripts, in program order; deliver() passes them on.
     virtual Canon &canon() = 0;
     virtual void deliver() = 0;
     /// The next waiting point reads the result of an input (M66, WAIT) or of a probe.
     virtual void expect_input() = 0;
     virtual void expect_probe() = 0;
 
-    /// #number; 0 for numbers out of range, as in LinuxCNC's glue code.
+    /// #number; 0 for numbers out of range, as in LinuxCNC.
     virtual double parameter(int number) const = 0;
     virtual Result<> set_parameter(int number, double value) = 0;
     virtual std::optional<double> named(std::string_view name) = 0;
     virtual Result<> set_named(std::string_view name, double value) = 0;
     virtual std::vector<std::string> local_names() const = 0;
     virtual std::vector<std::string> global_names() const = 0;
-    /// Global names that the interpreter or a script computes: read only.
+    /// Global names that the interpreter or a script computes; they are read-only.
     virtual std::vector<std::string> predefined_names() const = 0;
     /// Global names that a script computes.
     virtual std::vector<std::string> script_names() const = 0;
@@ -105,7 +105,7 @@ class InterpreterView {
     virtual int count_tools() const = 0;
     virtual ToolEntry tool(int index) const = 0;
     virtual int find_tool(int number) const = 0;  ///< -1 when the table has no such tool
-    /// The tool of current_pocket is in the spindle: #5400 to #5413 are updated.
+    /// Reads the tool of current_pocket as the tool in the spindle: #5400 to #5413 are updated.
     virtual void load_tool() = 0;
     virtual void synch() = 0;
 
@@ -119,8 +119,8 @@ class InterpreterView {
 struct ScriptOutcome {
     enum class Kind { DONE, VALUE, WAITING, EXIT, FAILED };
     Kind kind = Kind::DONE;
-    double value = 0;     ///< of VALUE
-    std::string message;  ///< of FAILED; with the place in the script
+    double value = 0;     ///< result of VALUE
+    std::string message;  ///< message of FAILED, with the position in the script
 };
 
 /// A suspended script. Destroying the object ends the script without continuing it.
@@ -147,7 +147,7 @@ class ScriptHost {
     virtual void follow(ScriptStop &stop) { static_cast<void>(stop); }
     /// Runs the top-level script. `view` must outlive the host.
     virtual Result<> load(const ScriptSettings &settings, InterpreterView &view) = 0;
-    /// The interpreter is ready: calls __init__ of the top-level script, if it exists.
+    /// Called when the interpreter is ready. Calls __init__ of the top-level script, if it exists.
     virtual Result<> begin() = 0;
     virtual bool hasFunction(ScriptModule module, std::string_view name) const = 0;
     /// `rest` is set when the outcome is WAITING.

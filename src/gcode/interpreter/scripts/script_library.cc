@@ -53,8 +53,8 @@ Result<std::unique_ptr<ScriptHost>> open_script_host(const std::string &file) {
     if (::access(file.c_str(), R_OK) != 0) {
         return fail(fmt::format("{} is not installed", file), {}, HINT);
     }
-    // Never closed: a Python interpreter cannot be unloaded. Global, as Python's own extensions need its
-    // symbols.
+    // Never closed, because a Python interpreter cannot be unloaded. Global, because Python's own extensions
+    // need its symbols.
     void *const library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
     if (library == nullptr) {
         return fail(fmt::format("cannot load {}: {}", file, ::dlerror()), {}, HINT);

@@ -15,7 +15,7 @@ namespace mw::gcode {
 /// a call of the interpreter. The script host waits for requests in a separate thread.
 class ScriptStop {
   public:
-    /// A call of the interpreter begins or has ended: earlier requests no longer apply.
+    /// Called when a call of the interpreter begins or has ended; earlier requests then have no effect.
     void begin() noexcept { seen_.store(requests_.load()); }
     /// Ends the scripts of the current call with an error.
     void request() {
@@ -40,7 +40,7 @@ class ScriptStop {
         ++changes_;
         changed_.notify_all();
     }
-    /// Position of the last script that was ended, "file:line"; empty: none was running.
+    /// Position of the last script that was ended, "file:line"; empty if none was running.
     void set_place(std::string place) {
         const std::lock_guard lock(mutex_);
         place_ = std::move(place);

@@ -24,7 +24,7 @@ class BlockReaderTest : public testing::Test {
         values.clear();
         return read_words(program->block(1), {evaluator, remaps}, values);
     }
-    /// Codes in the order of execution.
+    /// The codes in the order of execution.
     std::vector<GCode> codes() const {
         std::vector<GCode> out;
         for (const ActiveCode &active : values.codes) {

@@ -377,7 +377,7 @@ TEST(MachineFrame, MapsEachCallToWhatTheMachineDoes) {
             found.push_back(call.index());
         }
         if (std::holds_alternative<NurbsFeed>(one.call)) {
-            EXPECT_FALSE(found.empty()) << one.text;  // any number of moves
+            EXPECT_FALSE(found.empty()) << one.text;  // any number of moves is permitted
         } else {
             EXPECT_EQ(found, machine_kinds(one.call)) << one.text;
         }
@@ -396,7 +396,7 @@ TEST(MachineFrame, TurnsInchesOfAProgramIntoMillimetresOfTheMachine) {
     frame.take(StraightFeed{pose(1, 0, 0)});
     frame.take(SetSpindleSpeed{0, 300});
     ASSERT_EQ(machine.calls.size(), 2u);
-    constexpr double EXACT = 1e-9;  // rounding of a few products
+    constexpr double EXACT = 1e-9;  // the rounding error of a few products
     const auto &move = std::get<LineMove>(machine.calls[0]);
     EXPECT_NEAR(move.end[geometry::AXIS_X], 50.8, EXACT);
     EXPECT_NEAR(move.end[geometry::AXIS_Z], 50.8, EXACT);

@@ -154,7 +154,7 @@ TEST(MoveCodes, AThreadNeedsATurningSpindleAndASpeedThatTheMachineHas) {
     EXPECT_FALSE(p.run(G(33), words));
     EXPECT_EQ(p.fault.message, "Spindle not turning in g33");
     p.state.spindles[0] = {1200, 1};
-    p.settings.max_velocity_mm_s = 30;  // 2 mm at 20 revolutions per second: 40
+    p.settings.max_velocity_mm_s = 30;  // 2 mm at 20 revolutions per second is 40 mm/s
     EXPECT_FALSE(p.run(G(33), words));
     p.settings.max_velocity_mm_s = 50;
     EXPECT_TRUE(p.run(G(33), words));
@@ -165,7 +165,7 @@ TEST(SplineCodes, ANurbsIsSentWithAllItsPointsOnceItEnds) {
     CodeRig p;
     p.state.feed = 100;
     ASSERT_TRUE(p.run(G(5, 2), {{'x', 1}, {'y', 1}}));
-    EXPECT_FALSE(p.run(G(5, 3)));  // of order 3
+    EXPECT_FALSE(p.run(G(5, 3)));  // the NURBS is of order 3
     ASSERT_TRUE(p.run(G(5, 2), {{'x', 2}, {'y', 0}}));
     ASSERT_TRUE(p.run(G(5, 3)));
     EXPECT_EQ(p.points.size(), 3U);
@@ -180,7 +180,7 @@ TEST(SplineCodes, PointsOfABlockThatFailedDoNotCount) {
     ASSERT_TRUE(p.run(G(5, 2), {{'x', 1}, {'y', 1}}));
     const State before = p.state;
     ASSERT_TRUE(p.run(G(5, 2), {{'x', 7}, {'y', 7}}));
-    p.state = before;  // its block has failed
+    p.state = before;  // the block of the control point has failed
     ASSERT_TRUE(p.run(G(5, 2), {{'x', 2}, {'y', 0}}));
     ASSERT_EQ(p.points.size(), 3U);
     EXPECT_EQ(p.points[2].first, 2);

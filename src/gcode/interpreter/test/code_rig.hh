@@ -57,7 +57,7 @@ struct CodeRig {
                             saved_modes, lathe,    points, awaited, fanuc_call};
     detail::State state;
     detail::Fault fault;
-    detail::Outcome outcome = detail::Outcome::OK;  ///< of the last code
+    detail::Outcome outcome = detail::Outcome::OK;  ///< outcome of the last code
 
     /// A block with these words.
     detail::BlockValues block(Words words = {}) {

@@ -118,7 +118,7 @@ std::set<std::string> codes_in(const std::string &program) {
     return found;
 }
 
-/// Each code of the table occurs in a program above that works, and in one that is rejected.
+/// Each code of the table occurs in a program above that is accepted, and in one that is rejected.
 TEST(CodesTable, EveryCodeHasAGoodAndABadCase) {
     std::set<std::string> good, bad;
     for (const GoodCase &one : GOOD) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random contours for cutter compensation: lines and arcs that meet at any angle, with a tool that fits along
-// most of them; and the program for each.
+// Random contours for cutter compensation: lines and arcs at any angle, with a tool that fits most of them,
+// and a program for each contour.
 #pragma once
 
 #include <array>
@@ -46,8 +46,8 @@ struct CompContour {
     FlatPath pieces;
     std::array<double, 16> heights{};  ///< heights of the piece ends along the plane's normal
     FlatPoint exit;
-    bool crossing = false;  ///< reverses at a tip and loses more than permitted there
-    bool tight = false;     ///< the tool reaches at most a seventh of one of the pieces
+    bool crossing = false;  ///< the contour reverses at a tip and loses more than permitted there
+    bool tight = false;     ///< the tool can cut at most a seventh of one of the pieces
 
     double mm() const { return isInch ? 25.4 : 1.0; }
 };
@@ -57,15 +57,15 @@ inline double corner_angle(const FlatPiece &a, const FlatPiece &b) {
     return std::atan2(std::sin(turn), std::cos(turn));
 }
 
-/// Where the tool beside `piece` would touch `other`, from their common corner on.
+/// Range in which the tool beside `piece` would touch `other`, measured from their common corner.
 struct Contact {
-    double share = 0;    ///< fraction of the piece in the first stretch
-    double deepest = 0;  ///< depth in the first stretch
-    double apart = 0;    ///< depth in a second stretch
-    FlatPoint free;      ///< end of the first stretch
+    double share = 0;    ///< fraction of the piece in the first range
+    double deepest = 0;  ///< depth in the first range
+    double apart = 0;    ///< depth in a second range
+    FlatPoint free;      ///< end of the first range
 };
 
-/// A wedge between the two that closes again within `tolerance` belongs to the first stretch.
+/// A wedge between the two pieces that closes again within `tolerance` belongs to the first range.
 inline Contact contact(const FlatPiece &piece, const FlatPiece &other, double reach, double tolerance,
                        bool from_end) {
     constexpr int SAMPLES = 240;
@@ -104,10 +104,10 @@ inline Contact contact(const FlatPiece &piece, const FlatPiece &other, double re
 /// Junction of two pieces, by the points where the tool touches one while it cuts the other.
 struct Junction {
     Contact before, behind;
-    bool crossing = false;  ///< the stretches cannot be omitted: they end at different points
+    bool crossing = false;  ///< the ranges cannot be omitted, because they end at different points
 };
 
-/// `rounding`: distance that rounded coordinates may put between the ends of the stretches.
+/// `rounding`: distance between the ends of the ranges that rounded coordinates may cause.
 inline Junction junction(const FlatPiece &before, const FlatPiece &behind, double reach, double tolerance,
                          double rounding) {
     Junction out{contact(before, behind, reach, tolerance, true),
@@ -191,7 +191,7 @@ class ContourMaker {
                                                to.y - back * std::sin(heading) + beside * std::cos(heading)});
     }
 
-    /// All angles, most often near 0 and 180 degrees.
+    /// A random angle, most often near 0 and 180 degrees.
     double turn() {
         const double near = dice_.log_between(1e-7, 0.09);
         switch (dice_.up_to(9)) {
@@ -248,8 +248,8 @@ class ContourMaker {
                 before.end.y + contour_.radius * std::sin(angle)};
     }
 
-    /// True if the tool along `piece` touches only the previous piece, and the tool along the others does not
-    /// touch `piece`.
+    /// True if the tool along `piece` touches only the previous piece, and the tool along other pieces does
+    /// not touch `piece`.
     bool isApart(const FlatPiece &piece) const {
         constexpr int SAMPLES = 120;
         const double r = contour_.radius, reach = contour_.side * r;
@@ -281,7 +281,7 @@ class ContourMaker {
         return true;
     }
 
-    /// Long enough that rounding of its ends does not change its direction.
+    /// True if the piece is so long that rounding of its ends does not change its direction.
     bool isSound(const FlatPiece &piece) const {
         const double least = contour_.decimals == 4 ? 0.05 : 1e-4;
         return piece.length() > least &&
@@ -289,7 +289,7 @@ class ContourMaker {
                (!piece.isArc || piece.radius() > least);
     }
 
-    /// Neighbours at a corner may touch the tool only in one stretch from the corner on.
+    /// True if the neighbours of a corner touch the tool only in one range that begins at the corner.
     bool isFair(const FlatPiece &piece, bool &crossing, bool &tight) {
         const double reach = contour_.side * contour_.radius;
         const FlatPiece &before = contour_.pieces.empty() ? contour_.entry : contour_.pieces.back();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cuts a random contour and judges it: no gouges, everything cut that the tool can reach, and rejections only
-// for a reason in the contour.
+// Cuts a random contour and judges it: no gouges, everything is cut that the tool can reach, and a rejection
+// has a reason in the contour.
 #pragma once
 
 #include <string>
@@ -70,8 +70,8 @@ inline Step run_text(Interpreter &interpreter, const std::string &text) {
     return step;
 }
 
-/// How much nearer to the contour than its radius the tool may be: a nearly straight corner, a reversal at a
-/// tip, rounded coordinates [program units].
+/// Distance by which the tool may be nearer to the contour than its radius: a nearly straight corner, a
+/// reversal at a tip, rounded coordinates [program units].
 inline double allowed_gouge(const CompContour &c) {
     constexpr double STRAIGHT = 0.05 * 0.05 / 2.0, TIP_MM = 0.005;
     return 1.02 * STRAIGHT * c.radius + TIP_MM / c.mm() + (c.decimals == 4 ? 4e-4 : 1e-6);

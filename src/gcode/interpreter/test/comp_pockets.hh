@@ -11,7 +11,7 @@
 
 namespace mw::gcode::test {
 
-/// The wall surrounds the origin counterclockwise; the tool is inside.
+/// The wall runs counterclockwise around the origin; the tool is inside.
 struct Pocket {
     FlatPath wall;
     double radius = 1, layer = 1, helix = 1;
@@ -79,7 +79,8 @@ class PocketMaker {
                         (from.y + to.y) / 2.0 + far * std::sin(heading)};
         return piece;
     }
-    /// The tool beside each side touches only the neighbours, from the corner on, and fits beside the middle.
+    /// True if the tool beside each side touches only the neighbours, beginning at the corner, and fits
+    /// beside the middle.
     static bool isFair(const Pocket &pocket) {
         const double r = pocket.radius;
         const std::size_t count = pocket.wall.size();
@@ -149,7 +150,7 @@ inline std::string program_of(const Pocket &pocket) {
     return text;
 }
 
-/// Cuts the stock move by move; keeps the first fault.
+/// Cuts the stock move by move; stores the first fault.
 class StockRecorder : public Recorder {
   public:
     StockRecorder(const Pocket &pocket, testing::MillStock &stock) : pocket_(pocket), stock_(stock) {}

@@ -188,7 +188,7 @@ TEST(Compensation, JudgesSeeWhatIsWrong) {
     other.layer = 2.0 * pocket.layer;
     EXPECT_NE(judge_pocket(pocket, program_of(other)).fault.find("layer"), std::string::npos);
     std::string rapid = program_of(pocket);
-    rapid.replace(rapid.find("\nG1 Z") + 1, 2, "G0");  // down to the material: no fault
+    rapid.replace(rapid.find("\nG1 Z") + 1, 2, "G0");  // a move down to the material is not a fault
     EXPECT_EQ(judge_pocket(pocket, rapid).fault, "");
     rapid.replace(rapid.find("G41.1") != std::string::npos ? rapid.find("\nG1 ", rapid.find("G41.1")) + 1
                                                            : rapid.find("\nG1 ", rapid.find("G42.1")) + 1,

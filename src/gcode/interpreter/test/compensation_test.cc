@@ -149,7 +149,7 @@ TEST(CompensationAlone, ACopyTakesABlockBack) {
     EXPECT_NE(path.comp, before);
     path.comp = before;
     path.canon.rollback();
-    expect_ends(path, {{10, 1}});  // not shortened by the corner that was undone
+    expect_ends(path, {{10, 1}});  // the failed corner must not have shortened the move
 }
 
 TEST(CompensationAlone, HoldsTheLastMoveUntilItIsOff) {
@@ -172,7 +172,8 @@ TEST(CompensationAlone, OffWithoutAMoveAsksForNoStraightExit) {
 }
 
 TEST(CompensationAlone, ALatheToolIsLedByItsControlledPoint) {
-    // Orientation 2 in the plane of Z and X: the point lies at (-1, -1) radii from the nose's centre.
+    // Orientation 2 in the plane of Z and X: the controlled point is at (-1, -1) radii from the nose's
+    // centre.
     constexpr int ORIENTATION = 2;
     Compensation comp;
     comp.turn_on(CompSide::LEFT, G(41, 1), 0.5, ORIENTATION);

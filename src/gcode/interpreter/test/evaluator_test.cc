@@ -13,7 +13,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// Has #<_mode>, and #<_gone> without a value; #5420 is 42.
+/// #<_mode> has a value, #<_gone> has none; #5420 is 42.
 class Kept final : public BuiltIns {
   public:
     bool isBuiltInName(std::string_view name) const override { return name == "_mode" || name == "_gone"; }

@@ -107,7 +107,7 @@ TEST(Flow, EndlessLoopEndsByTheBudget) {
     EXPECT_EQ(machine.run("o1 while [1]\no1 endwhile\n"), Step::FAILED);
 }
 
-/// Errors name the line that breaks the structure of O words, not the line where it is detected.
+/// An error names the line that breaks the structure of O words, not the line in which it is detected.
 TEST(Flow, BrokenOWordsAreNamedWhereTheyStand) {
     const struct {
         const char *program, *error;

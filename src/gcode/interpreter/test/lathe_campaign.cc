@@ -52,7 +52,7 @@ class CycleRecorder : public MachineCanon {
     }
 };
 
-/// Rejections for the same reason have the same text.
+/// The error text without numbers, so that rejections for the same reason have the same text.
 std::string without_figures(const std::string &error) {
     std::string out;
     for (const char c : error.substr(0, error.find('\n'))) {
@@ -121,7 +121,7 @@ LatheVerdict run_lathe_job(const testing::LatheJob &job) {
             at = move.path.to;
             ++verdict.moves;
         }
-        // Material that G71.1 leaves for G71.2, and G71 for G70, on the face at the contour's end.
+        // Material on the face at the contour's end, which G71.1 leaves for G71.2, and G71 for G70.
         skin = cycle.allowance;
         const double end_allowance = std::fmax(cycle.allowance, 0.0);
         const std::string left = stock.unfinished(cycle.allowance, cycle.isPocketLeft, end_allowance);

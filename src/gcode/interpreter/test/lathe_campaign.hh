@@ -9,7 +9,7 @@
 namespace mw::gcode::test {
 
 struct LatheVerdict {
-    std::string refusal;  ///< the interpreter's text without numbers; nothing when it has run
+    std::string refusal;  ///< the interpreter's error without numbers; nothing if the program was accepted
     std::string fault;    ///< fault of the moves, or of the remaining material
     std::size_t moves = 0;
     std::vector<testing::Place> last_places;  ///< after each G4 P0: end of the last feed move

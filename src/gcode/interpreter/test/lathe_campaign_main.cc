@@ -53,7 +53,7 @@ std::string line_of(unsigned seed) {
     return fmt::format("{} {} {} {} moves | {}\n", seed, codes, kind_of(job), verdict.moves, result);
 }
 
-/// Every `processes`-th seed.
+/// Runs every `processes`-th seed.
 bool work(const Task &task, unsigned part, const std::set<unsigned> &done) {
     const int file = ::open(task.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (file < 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A part of the campaign of random turning jobs; lathe_campaign runs the whole.
+// A part of the campaign of random turning jobs; lathe_campaign runs all of it.
 #include <fstream>
 #include <sstream>
 
@@ -25,8 +25,8 @@ TEST(LatheCampaign, CutsNothingButTheStockAboveTheAllowanceAndAllOfThat) {
     EXPECT_LE(refused * 50, COUNT) << "more than 2 percent rejected";
 }
 
-/// An arc that ends vertically and a wall down from there: rounded numbers shift the fold slightly to the
-/// wrong side.
+/// An arc that ends vertically, followed by a wall down from its end: rounded numbers shift the fold slightly
+/// to the wrong side.
 TEST(LatheCampaign, APeakOfAnArcAndAWallKeepsItsAllowanceAllAround) {
     const testing::LatheJob job = testing::make_lathe_job(19588);
     const LatheVerdict verdict = run_lathe_job(job);

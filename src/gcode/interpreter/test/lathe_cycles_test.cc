@@ -30,7 +30,7 @@ class LatheCyclesAlone : public ::testing::Test {
         return record(values);
     }
     bool finish() { return p.lathe.finish(p.state, p.canon, p.fault); }
-    /// To X10, along Z to -10, out to X20.
+    /// Records the step: to X10, along Z to -10, out to X20.
     void record_step() {
         ASSERT_TRUE(record(G(1), {{'x', 10}, {'z', 0}}));
         ASSERT_TRUE(record({{'z', -10}}));
@@ -103,7 +103,7 @@ TEST_F(LatheCyclesAlone, RoughingGoesDownInLayersNoDeeperThanTheIncrement) {
 }
 
 TEST_F(LatheCyclesAlone, FinishingTakesTheSideOfTheLastRoughingUntilTheProgramEnds) {
-    // A bore that widens inwards, for G71 or G72; a distance lies on opposite sides then.
+    // A bore that widens inwards. The distance D of G71 and that of G72 are on opposite sides.
     const auto profile = [&] {
         ASSERT_TRUE(record(G(1), {{'x', 20}, {'z', 0}}));
         ASSERT_TRUE(record({{'x', 30}, {'z', -10}}));

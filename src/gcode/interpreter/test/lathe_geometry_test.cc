@@ -20,7 +20,7 @@ ProfileSegment line(Point from, Point to) {
     return one;
 }
 
-/// From (-1, 30) to the first point and through the others.
+/// A profile from (-1, 30) to the first point and through the other points.
 Profile through(const std::vector<Point> &points) {
     Profile profile{line({-1, 30}, points.front())};
     for (std::size_t i = 1; i < points.size(); ++i) {
@@ -46,7 +46,7 @@ TEST(LatheOffset, SkipsAGrooveNarrowerThanTheCircles) {
     const Profile groove = through({{0, 9}, {10, 9}, {10, 4}, {11, 4}, {11, 9}, {20, 9}});
     const Profile edge = offset_profile(groove, 2.0, TOLERANCE);
     for (const ProfileSegment &piece : edge) {
-        EXPECT_GT(piece.end.y, 10.9);  // the circles around both rims meet at 9 + sqrt(4 - 0.25)
+        EXPECT_GT(piece.end.y, 10.9);  // the circles around both rims intersect at 9 + sqrt(4 - 0.25)
     }
     EXPECT_NEAR(edge.back().end.x, 20.0, 1e-9);
 }

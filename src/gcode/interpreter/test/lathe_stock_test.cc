@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The judge of turned stock finds faults and accepts correct parts.
+// Checks that the judge of turned stock finds faults and accepts correct parts.
 #include <gtest/gtest.h>
 
 #include "tests/support/stock/lathe_stock.hh"

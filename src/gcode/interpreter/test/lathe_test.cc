@@ -62,7 +62,7 @@ TEST(LatheCycle, DLeavesADistanceToTheProfile) {
 
 TEST(LatheCycle, G71CutsPocketsToo) {
     const std::string moves = moves_of(GROOVE, "G71 Q100 I8 R1");
-    // Levels 20 and 12 on the descent; 4 is below the groove, which is followed at once.
+    // Levels 20 and 12 on the descent; 4 is below the groove, so the groove is followed directly.
     EXPECT_NE(moves.find("f10.000,-10.000 f6.000,-12.000 f6.000,-20.000 f10.000,-22.000"), std::string::npos)
         << moves;
     const std::string deep = moves_of(GROOVE, "G71 Q100 I6 R1");
@@ -162,7 +162,7 @@ TEST(LatheCycle, AProfileThatEndsLowerIsCutInLayersFromTheStart) {
               "r19.000,1.000 r18.000,2.000 r14.000,2.000 f14.000,-20.000 r15.000,-19.000 r15.000,1.000 "
               "r14.000,2.000 r10.000,2.000 f10.000,-10.000 f10.000,-20.000 r11.000,-19.000 r11.000,-11.000 "
               "f10.000,-10.000 f6.000,-10.000 f6.000,-20.000 f18.000,-20.000 ");
-    // Pockets skipped: straight across the groove.
+    // With pockets skipped: straight across the groove.
     const std::string skipping = moves_of(LOW_END, "G71.1 Q100 X18 I4 R1");
     EXPECT_EQ(skipping.find("f6.000"), std::string::npos) << skipping;
     EXPECT_NE(skipping.find("f10.000,-20.000 f18.000,-20.000"), std::string::npos) << skipping;
@@ -260,7 +260,7 @@ TEST(LatheCycle, G70LeavesAHumpAboveItsStartAloneBetweenPasses) {
 }
 
 TEST(LatheCycle, G70TakesTheSideOfTheRoughingBeforeIt) {
-    // A dish that falls along X and Z. Rotated, D lies on its other side.
+    // A dish that falls along X and Z. If it is mirrored, D is on the other side.
     const std::string dish = "O100 sub\nG0 X20 Z0\nG1 X10 Z-5\nG1 X2 Z-6\nO100 endsub\n";
     EXPECT_NE(error_of(dish, "G70 Q100 X22 Z2 D0.5").find("opposite sides"), std::string::npos);
     EXPECT_FALSE(moves_of(dish, "G70 Q100 X22 Z2").empty());
@@ -291,7 +291,8 @@ TEST(LatheCycle, G712CutsWhatFallsFromTheFirstPointInLayersToo) {
     }
 }
 
-/// The controlled point of a lathe tool is beside the centre of its nose, by the tool's orientation.
+/// The controlled point of a lathe tool is offset from the centre of its nose according to the tool's
+/// orientation.
 TEST(LatheCompensation, OrientationMovesThePath) {
     const double shifts[][2] = {{0, 0}, {-1, 1}, {-1, -1}, {1, -1}, {1, 1},
                                 {0, 1}, {-1, 0}, {0, -1},  {1, 0},  {0, 0}};

@@ -49,7 +49,7 @@ TEST_F(LevelsTest, ACallComesBackToTheLineBehindIt) {
     levels.open(main);
     Place &here = levels.here();
     here.line = 2;
-    here.next = 9;  // any target of the block
+    here.next = 9;  // any target of a jump in the block
     here.repeats = {{1, 5}};
     levels.enter(call(CallKind::OWORD, "sub"));
     EXPECT_TRUE(here.repeats.empty()) << "the caller's loops are not the subroutine's";

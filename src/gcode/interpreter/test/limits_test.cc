@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Limits: far above LinuxCNC's, with a clear error when exceeded. A failed block changes nothing.
+// Limits are far above LinuxCNC's, with a clear error when exceeded. A failed block changes nothing.
 #include <array>
 #include <random>
 #include <string>
@@ -64,7 +64,7 @@ TEST(Limits, BracketsAreNestedUpTo128Deep) {
     EXPECT_EQ(machine.run("#1=" + std::string(300, '[') + "1" + std::string(300, ']') + "\n"), Step::FAILED);
 }
 
-/// The visible state that the next block depends on.
+/// The visible state on which the next block depends.
 std::string state_of(const Machine &machine) {
     std::string out;
     const ActiveCodes codes = machine.interpreter->active_codes();

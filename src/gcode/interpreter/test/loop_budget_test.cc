@@ -15,7 +15,7 @@ Settings with_budgets(std::uint64_t statements, std::uint64_t idle, double secon
     return settings;
 }
 
-/// Number of statements accepted in a subroutine; at most 1000.
+/// Number of statements accepted in a subroutine, at most 1000.
 int count_taken(LoopBudget &budget) {
     int count = 0;
     while (count < 1000 && budget.take_statement(0)) {
@@ -52,7 +52,7 @@ TEST(LoopBudget, ProgressOfTheMachineRenewsTheIdleBudgetOnly) {
         EXPECT_EQ(count_taken(budget), i == 0 ? 9 : 10) << i;
         budget.mark_progress(1);
     }
-    // Rejected statements are counted too, so the other budget is used up by now.
+    // Rejected statements are counted, too, so the other budget is now exhausted.
     EXPECT_EQ(count_taken(budget), 1);
     EXPECT_TRUE(budget.isSpent());
 }
@@ -103,7 +103,7 @@ TEST(LoopBudget, TellsALoopWhosePassesAreAllTheSame) {
         ++passes;
     }
     EXPECT_LT(passes, 1000);
-    // A change of one number, one mode or one name is enough.
+    // A change of one number, one mode or one name is sufficient.
     for (int what = 0; what < 3; ++what) {
         Names names;
         State changing;

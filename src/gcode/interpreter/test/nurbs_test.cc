@@ -42,7 +42,7 @@ P point(const NurbsFeed &nurbs, double part) {
     return {x / w, y / w};
 }
 
-/// Closely spaced points along the pieces, and the largest angle at a joint [rad].
+/// Points along the pieces at a small spacing, and the largest angle at a joint [rad].
 std::vector<P> walk(const NurbsFeed &nurbs, const std::vector<PlanePiece> &pieces, double &bend) {
     std::vector<P> places;
     P at{nurbs.points[0].first, nurbs.points[0].second};

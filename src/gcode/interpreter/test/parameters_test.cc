@@ -69,7 +69,7 @@ TEST_F(ParametersTest, RollbackIsExact) {
             continue;
         }
         parameters.rollback();
-        // Memory for globals may have grown; unset ones have no value.
+        // The memory for globals may have grown; globals that are not set have no value.
         Parameters::Values after = parameters.values();
         while (after.globals.size() > before.globals.size()) {
             ASSERT_EQ(after.globals.back(), std::nullopt);

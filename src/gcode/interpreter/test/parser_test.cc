@@ -10,7 +10,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// Trees as text in brackets, operator first: implemented here, so that nothing is shared with the printer.
+/// Trees as text in brackets, operator first. Implemented here, so that no code is shared with the printer.
 class Trees {
   public:
     Trees(const Arena &arena, const Names &names) : arena_(arena), names_(names) {}
@@ -167,7 +167,7 @@ TEST(Parser, NestingIsBounded) {
         const auto nested = [&](int depth) {
             return "#1=" + repeated(opener, depth) + "1" + (is_bracket ? repeated("]", depth) : "");
         };
-        // The innermost number is also a value.
+        // The innermost number is a value, too.
         EXPECT_TRUE(Line(nested(MOST - 1)).isRead()) << opener;
         const Line deep(nested(MOST));
         ASSERT_FALSE(deep.isRead()) << opener;

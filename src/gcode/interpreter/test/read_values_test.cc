@@ -69,7 +69,7 @@ TEST(Attributes, WhatIsSetIsReadBackAndNothingElseChanges) {
             continue;
         }
         ++writable;
-        const bool bounded = name == "active_spindle";  // the mill has one, number 0
+        const bool bounded = name == "active_spindle";  // the mill has one spindle, number 0
         EXPECT_EQ(number(values.get(name)), bounded ? 0 : 1) << name;
         for (const std::string_view other : attribute_names()) {
             if (other != name && !other.starts_with("program_")) {

@@ -18,7 +18,7 @@
 
 namespace mw::gcode::test {
 
-/// Records moves; everything else as text in `calls`.
+/// Records moves, and all other calls as text in `calls`.
 class Recorder : public MachineCanon {
   public:
     std::vector<LineMove> lines;

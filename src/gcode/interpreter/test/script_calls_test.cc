@@ -31,7 +31,7 @@ struct Scripted {
     int ended_waiting = 0;  ///< number of suspended scripts that were ended
     bool open_failing = false;
 
-    /// The message when the block failed, else whether it reached a waiting point.
+    /// Returns the error if the block failed, else whether it reached a waiting point.
     std::string execute(std::string_view block) {
         const auto done = view->execute(block, 7);
         return !done ? done.error().message : *done ? "done" : "waiting";
@@ -212,7 +212,7 @@ TEST(ScriptCalls, WhatAScriptLeavesUnderWayIsRunBeforeItsCallEnds) {
     Scripted scripted;
     scripted.functions["hasty"] = [&](const ScriptArguments &) {
         EXPECT_EQ(scripted.execute("o<inner> call"), "waiting");
-        return ScriptOutcome{ScriptOutcome::Kind::VALUE, 6, {}};  // and does not wait
+        return ScriptOutcome{ScriptOutcome::Kind::VALUE, 6, {}};  // the function does not wait
     };
     Machine machine(with_scripts(scripted));
     machine.write("inner.ngc", "o<inner> sub\nM66 P0 L0\n(print,rest)\no<inner> endsub\n");

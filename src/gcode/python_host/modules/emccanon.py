@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Canon calls for scripts, in program order. They do not move the interpreter's own position: use
-self.execute() for moves that later blocks build on, or synchronise after them."""
+"""Canon calls for scripts, in program order. They do not change the interpreter's own position.
+If later blocks depend on the moves, use self.execute() or synchronise after them."""
 import enum as _enum
 
 from _millwright_canon import *  # noqa: F401,F403

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The interpreter as remap handlers, O words and named parameters see it.
+"""The interpreter's interface for remap handlers, O words and named parameters.
 
-`this` is the interpreter that calls the script; handlers get it as `self`. Lengths are in program units
+`this` is the interpreter that calls the script; handlers receive it as `self`. Lengths are in program units
 (G20/G21), those of the tool table in machine units, angles in degrees. Only usable while a handler runs.
 """
 import enum as _enum
@@ -11,7 +11,7 @@ import _millwright_script as _native
 
 
 class _Number(_enum.IntEnum):
-    """A number with a name: prints as the name."""
+    """A number with a name; str() returns the name."""
 
     def __str__(self):
         return self.name
@@ -21,7 +21,7 @@ class _Number(_enum.IntEnum):
 
 
 class InterpReturn(_Number):
-    """What a handler returns or yields, and what execute() gives."""
+    """Values that a handler returns or yields, and that execute() returns."""
     INTERP_OK = 0
     INTERP_EXIT = 1
     INTERP_EXECUTE_FINISH = 2
@@ -59,7 +59,7 @@ class SPINDLE_MODE(_Number):
 for _group in (InterpReturn, CUTTER_COMP_DIRECTION, DISTANCE_MODE, FEED_MODE, RETRACT_MODE, SPINDLE_MODE):
     globals().update(_group.__members__)
 
-INTERP_MIN_ERROR = 3  # codes from here on are errors
+INTERP_MIN_ERROR = 3  # first code that is an error
 TOLERANCE_EQUAL = 0.0001
 throw_exceptions = 1  # execute() raises InterpreterException; 0: it returns INTERP_ERROR
 this = None
@@ -78,7 +78,7 @@ def is_near_int(value):
 
 
 class InterpreterException(Exception):
-    """A block that execute() ran has failed."""
+    """Raised when a block in execute() has failed."""
 
     def __init__(self, error_message, line_number=0, line_text=''):
         super().__init__(error_message)
@@ -96,7 +96,7 @@ class PmCartesian:
 
 
 class EmcPose:
-    """Nine coordinates. Those of self.tool_offset write through."""
+    """Nine coordinates. A change of self.tool_offset changes the interpreter's offset."""
     __slots__ = ('_values', '_store')
 
     def __init__(self, values=(0.0,) * 9, store=None):
@@ -131,7 +131,7 @@ for _index, _name in enumerate('xyzabcuvw'):
 
 
 class CANON_TOOL_TABLE:
-    """One entry of the tool table, as it was when it was read."""
+    """One entry of the tool table, as read."""
 
     def __init__(self, toolno=-1, pocketno=0, offset=(0.0,) * 9, diameter=0.0, frontangle=0.0, backangle=0.0,
                  orientation=0, comment=''):
@@ -145,7 +145,7 @@ class CANON_TOOL_TABLE:
 
 
 class _Array:
-    """Items counted from 0; IndexError after the end."""
+    """Items with indices from 0; IndexError after the end."""
 
     def __init__(self, size, read, write=None):
         self._size, self._read, self._write = size, read, write
@@ -269,7 +269,7 @@ class map_indexing_suite_ParameterMap_entry:
 
 
 class ParameterMap:
-    """Named parameters of a level of call, sorted; its items have key() and data()."""
+    """Named parameters of a call level, sorted; its items have key() and data()."""
 
     def __init__(self, items):
         self._items = dict(items)
@@ -288,7 +288,7 @@ class ParameterMap:
 
 
 class Context:
-    """One level of call: self.sub_context[0] is the main program, [self.call_level] the innermost."""
+    """One call level: self.sub_context[0] is the main program, [self.call_level] the innermost level."""
     _READONLY, _GLOBAL, _COMPUTED, _INI, _SCRIPT = 1, 2, 8, 16, 32
 
     def __init__(self, data, predefined, scripted):
@@ -353,7 +353,7 @@ class Params:
 
 
 class Interp:
-    """The interpreter. Attributes give its state by name; other attributes belong to the script and are kept."""
+    """The interpreter. Attributes give its state by name; the script may define other attributes."""
 
     def __init__(self, view):
         object.__setattr__(self, '_view', view)
@@ -379,7 +379,7 @@ class Interp:
     # ---- running
 
     def execute(self, text, line=0):
-        """Runs a block and the subroutines it calls. INTERP_EXECUTE_FINISH: yield that before the next one."""
+        """Runs a block and its subroutines. After INTERP_EXECUTE_FINISH, yield before the next block."""
         code, message, line_number, line_text = self._view.execute(str(text), int(line))
         if code >= INTERP_MIN_ERROR and throw_exceptions:
             raise InterpreterException(message, line_number, line_text)
@@ -388,7 +388,7 @@ class Interp:
         return code
 
     def set_errormsg(self, text):
-        """The message for a handler that returns INTERP_ERROR."""
+        """Sets the message for a handler that returns INTERP_ERROR."""
         self._view.set_attribute('errormsg', str(text))
 
     def get_errormsg(self):
@@ -459,7 +459,7 @@ class Interp:
         return ToolTableArray(max(size, 1001), read)
 
     def find_tool_pocket(self, number):
-        """(INTERP_OK, index in the tool table), or (INTERP_ERROR, 0)."""
+        """Returns (INTERP_OK, index in the tool table), or (INTERP_ERROR, 0)."""
         index = self._view.find_tool(int(number))
         return (int(INTERP_OK), index) if index >= 0 else (int(INTERP_ERROR), 0)
 
@@ -467,6 +467,6 @@ class Interp:
         return InterpReturn(0)
 
     def set_tool_parameters(self):
-        """#5400 to #5413 become those of the tool at current_pocket."""
+        """Sets #5400 to #5413 to the data of the tool at current_pocket."""
         self._view.load_tool()
         return InterpReturn(0)

@@ -11,11 +11,12 @@ namespace {
 
 constexpr double PI = std::numbers::pi;
 constexpr double TINY = 1e-10;
-/// Corners with a smaller angle are treated as straight: the tool comes nearer by 1/800 of its radius. This
-/// near to a reversal the curvature of arcs decides on which side the contour continues. [rad]
+/// Corners with a smaller angle are treated as straight: the tool is nearer to the contour by at most 1/800
+/// of its radius. Within this angle of a reversal, the curvature of arcs determines on which side the contour
+/// continues. [rad]
 constexpr double STRAIGHT_ANGLE = 0.05;
 constexpr double STRAIGHT_ERROR = STRAIGHT_ANGLE * STRAIGHT_ANGLE / 2.0;
-/// A wider notch between a move and an arc closes far from the corner [rad].
+/// If the notch between a move and an arc is wider than this, it closes far from the corner [rad].
 constexpr double CLOSING_ANGLE = 0.3;
 /// Corners and arcs with a larger total angle may lead back across the previous move [rad].
 constexpr double TIP_ANGLE = PI / 2.0;
@@ -61,7 +62,7 @@ bool isForward(const CompElement &element, Point start, Point end, double slack)
 }
 
 /// True if a move from `from` to `to` follows the element, on an arc by at most 180 degrees. It may go back
-/// by `slack`, for rounded coordinates.
+/// by `slack`, because coordinates are rounded.
 bool isAlong(const CompElement &element, Point from, Point to, double slack) {
     if (!element.isArc) {
         return dot({to.x - from.x, to.y - from.y}, element.start_direction) > -slack;
@@ -70,10 +71,11 @@ bool isAlong(const CompElement &element, Point from, Point to, double slack) {
     return sweep <= PI || (2.0 * PI - sweep) * element.radius < slack;
 }
 
-/// The crossing nearest to the programmed corner that shortens both elements without removing one.
+/// The intersection nearest to the programmed corner that shortens both elements without removing one of
+/// them.
 std::optional<Point> cut_corner(const CompElement &last, const CompElement &next, Point corner,
                                 const CornerTool &tool) {
-    // Rounded coordinates shift a crossing at a small angle by many times the rounding error.
+    // Rounded coordinates shift an intersection at a small angle by a multiple of the rounding error.
     const double slack = std::fmin(0.5 * tool.radius, 0.1 * tool.radius + 20.0 * tool.rounding);
     const Crossings found = crossings(last, next);
     std::optional<Point> best;
@@ -116,7 +118,7 @@ double distance_to(const CompElement &element, Point start, Point point) {
     return at > 0.0 && at < length ? std::fmin(ends, std::fabs(cross(along, gap))) : ends;
 }
 
-/// How much nearer to the centre the end of an arc is than its start.
+/// Difference of the distances of the arc's start and end from its centre; positive if the end is nearer.
 double radius_error(const CompElement &element) {
     return element.isArc ? distance(element.centre, element.from) - distance(element.centre, element.to)
                          : 0.0;
@@ -166,7 +168,7 @@ bool isTouching(const CompElement &last, const CompElement &next, const CornerTo
     const double off = std::fabs(radius_error(last)) + std::fabs(radius_error(next));
     const double least = tool.radius - (has_arc ? tool.tolerance : tool.rounding) - off;
     const CompElement contours[] = {programmed(last), programmed(next)};
-    // A start that a nearly straight corner has shifted is not used here.
+    // A start that was shifted at a nearly straight corner is not used here.
     const Point begun = offset_start(last, tool);
     const Point start = distance(begun, last.start) < 1.2 * STRAIGHT_ANGLE * tool.radius ? begun : last.start;
     const Point a = unit(next.from, last.end), b = unit(next.from, next.start);
@@ -195,7 +197,7 @@ bool isNearlyStraight(const CompElement &last, const CompElement &next, double t
     if (!next.isArc) {
         return dot({next.end.x - last.end.x, next.end.y - last.end.y}, next.start_direction) > -TINY;
     }
-    // The start may be off the arc by little more than the rounding of coordinates.
+    // The start may be off the arc by slightly more than the rounding of coordinates.
     const double off = distance(next.centre, last.end) - next.radius - radius_error(next);
     if (std::fabs(off) > STRAIGHT_ERROR * radius + TINY) {
         return false;
@@ -242,7 +244,7 @@ Corner decide_corner(const CompElement &last, const CompElement &next, Point cor
     const bool notch_small = bend > TINY && from_reversal < CLOSING_ANGLE && notch < tool.tolerance;
     if (!cut && (turn > 0.0 || (has_arc && notch_small))) {
         cut = cut_corner(last, next, corner, tool);
-        // A notch between the two may close before it matters.
+        // The notch between the two elements may close near the corner.
         const bool may_close = (!has_arc || bend < 0.0) && from_reversal < CLOSING_ANGLE && !last.is_entry;
         if (!cut && turn > 0.0 && may_close && !bent && !isTouching(last, next, tool)) {
             return {CornerKind::AROUND, {}};

@@ -15,7 +15,7 @@ enum class CompSide { OFF, LEFT, RIGHT };
 struct CompElement {
     bool set = false;  ///< true after the first move since compensation was switched on
     bool isArc = false;
-    bool is_entry = false;  ///< the move at whose end the tool touches the contour for the first time
+    bool is_entry = false;  ///< the move at whose end the tool first touches the contour
     Point from, to;         ///< as programmed
     Point start, end;
     Point start_direction, end_direction;  ///< unit vectors
@@ -43,15 +43,16 @@ struct Corner {
 struct CornerTool {
     CompSide side = CompSide::LEFT;
     double radius = 0;
-    double tolerance = 0;  ///< how far the tool may cut into a contour that reverses at a tip
-    double rounding = 0;   ///< rounding of coordinates: two reversing lines closer than this are one
+    double tolerance = 0;  ///< maximum depth of a cut into a contour that reverses at a tip
+    double rounding = 0;   ///< rounding of coordinates: two reversing lines closer than this are treated as
+                           ///< one line
 };
 
 /// Unit vector from a path in `direction` towards the tool.
 Point side_normal(CompSide side, Point direction);
 
 /// `last` ends (or should end) at the programmed point `corner`, where `next` begins; `next.start` is its
-/// offset start without regard to `last`.
+/// offset start, calculated without `last`.
 Corner decide_corner(const CompElement &last, const CompElement &next, Point corner, const CornerTool &tool);
 
 /// Angle of the tool centre about the centre of an arc from `from` to `to`, 0 to a full circle [rad].

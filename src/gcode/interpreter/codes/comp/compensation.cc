@@ -22,7 +22,7 @@ constexpr double RAPID_TURN = std::numbers::pi / 3.0;
 
 }  // namespace
 
-/// From the centre of a lathe tool's nose to its controlled point, by the tool's orientation 1 to 8.
+/// Vector from the nose centre of a lathe tool to its controlled point, for orientation 1 to 8.
 Point Compensation::shift(Plane plane) const {
     static constexpr Point SHIFTS[] = {{0, 0}, {1, -1}, {-1, -1}, {-1, 1}, {1, 1},
                                        {1, 0}, {0, -1}, {-1, 0},  {0, 1},  {0, 0}};  // Z, X
@@ -74,7 +74,7 @@ Pose Compensation::compensated(const Pose &position, Plane plane) const {
     return isHolding() ? in_plane(position, last_.end, plane) : position;
 }
 
-/// Moves the end of the last move to `end`, also for later moves outside the plane.
+/// Moves the end of the last move to `end`, also for later moves that do not move in the plane.
 void Compensation::end_last_at(Point end, Plane plane, CanonQueue &canon) {
     const PlaneAxes axes = plane_axes(plane);
     const Pose place = in_plane({}, end, plane);
@@ -82,7 +82,7 @@ void Compensation::end_last_at(Point end, Plane plane, CanonQueue &canon) {
     last_.end = end;
 }
 
-/// The rapid path around a convex corner, at the tool radius or more from it.
+/// The rapid path around a convex corner, at a distance of at least the tool radius.
 void Compensation::send_rapid_around(const CompPlace &place, Point to, Point corner,
                                      CanonQueue &canon) const {
     const Point a = unit(corner, last_.end), b = unit(corner, to);
@@ -112,8 +112,7 @@ bool Compensation::join(const CompPlace &place, CompElement &next, bool rapid, s
     case CornerKind::STRAIGHT:
         next.start = last_.end;
         if (next.isArc && distance(next.from, next.to) < TINY) {
-            next.end =
-                next.start;  // otherwise a full circle that begins beside its end would become a short arc
+            next.end = next.start;  // a full circle that begins beside its end would become a short arc
         }
         return true;
     case CornerKind::AROUND:
@@ -185,7 +184,7 @@ bool Compensation::enter_by_arc(const CompPlace &place, const ArcPlan &arc, Comp
     const Point normal = side_normal(side_, next.end_direction);
     const Point chord{from.x - next.end.x, from.y - next.end.y};
     const double along = dot(chord, normal);
-    // The centre lies on the normal at the end, at equal distances from start and end.
+    // The centre is on the normal at the end, at equal distances from start and end.
     const bool inside = (arc.rotation > 0) == (side_ == CompSide::LEFT);
     const bool is_same_side = (along > TINY) == inside && std::fabs(along) > TINY;
     if (!is_same_side) {

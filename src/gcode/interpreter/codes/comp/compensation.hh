@@ -13,25 +13,25 @@
 
 namespace mw::gcode::detail {
 
-/// Start of a move, and the meaning of its values.
+/// Start of a move, and the modes that its values depend on.
 struct CompPlace {
     const Pose &position;  ///< as programmed [program units]
     Plane plane = Plane::XY;
     LengthUnits units = LengthUnits::MM;
 };
 
-/// The end of a move is final only when the next one is known: in a concave corner both offset paths are cut
-/// at their intersection, around a convex one an arc is inserted. The last move therefore stays in the queue.
-/// A plain value: a copy can undo a block; the queue undoes changed calls.
+/// The end of a move is final only when the next move is known: in a concave corner both offset paths are cut
+/// at their intersection, at a convex corner an arc is inserted. The last move therefore remains in the
+/// queue. A plain value: a copy can undo a block; the queue undoes changed calls.
 class Compensation {
   public:
     /// G41 and G42; [program units]
     void turn_on(CompSide side, GCode code, double radius, int orientation);
-    /// The next move must be straight if the tool is offset from the contour.
+    /// Ends compensation. If the tool is offset from the contour, the next move must be straight.
     void turn_off();
     /// G40: turn_off(), with a comment.
     void end(CanonQueue &canon);
-    /// The next move is treated as the first one.
+    /// Treats the next move as the first move.
     void forget_move() { last_ = {}; }
 
     /// A straight move; false after setting the fault.
@@ -39,19 +39,19 @@ class Compensation {
     bool move_along_arc(const CompPlace &place, const ArcPlan &arc, CanonQueue &canon, Fault &fault);
 
     bool isOn() const { return side_ != CompSide::OFF; }
-    /// There was a move since it was switched on.
+    /// True if there was a move since compensation was switched on.
     bool hasMoved() const { return last_.set; }
     CompSide side() const { return side_; }
     GCode code() const { return code_; }
     double radius() const { return radius_; }
     int orientation() const { return orientation_; }
-    /// Compensation has been switched off: the next move must be straight.
+    /// True if compensation has been switched off, so that the next move must be straight.
     bool isExit() const { return is_exit_; }
     void set_exit(bool is_exit) { is_exit_ = is_exit; }
     /// Position of the tool for the programmed `position`.
     Pose compensated(const Pose &position, Plane plane) const;
 
-    /// The first call that must stay in the queue, because its end may change.
+    /// The first call that must remain in the queue, because its end may change.
     std::size_t held_call() const { return last_.record; }
     bool isHolding() const { return isOn() && last_.set; }
     void set_held_call(std::size_t call) { last_.record = call; }

@@ -31,7 +31,8 @@ bool needsSpindle(GCode code) {
     return code == G(74) || code == G(84) || (code >= G(86) && code <= G(88));
 }
 
-/// Missing words keep the values of the previous cycle; the first cycle of its type needs all of them.
+/// Reads the words of a cycle. Missing words keep the values of the previous cycle; the first cycle of its
+/// type needs all of them.
 bool take_cycle_words(GCode code, const BlockValues &values, State &state) {
     const bool first = state.motion != code;
     const char depth = geometry::AXIS_LETTERS_LOWER[plane_axes(state.plane).normal];
@@ -197,7 +198,7 @@ void CycleMoves::run_cycle(const CyclePlan &plan) {
         cycle_move(true, normal, plan.clear);
         start_spindle(direction);
         break;
-    case G(88):  // the operator retracts by hand to the clear height
+    case G(88):  // G88: the operator retracts by hand to the clear height
         canon.take(StopSpindle{state.active_spindle});
         canon.take(ProgramStop{});
         start_spindle(direction);
@@ -289,7 +290,7 @@ void CycleMoves::run_back_bore(const CyclePlan &plan, int direction) {
         constexpr double PATIENCE_S = 60.0;
         canon.take(StopSpindle{spindle});
         canon.take(OrientSpindle{spindle, 0.0, COUNTERCLOCKWISE});
-        if (settings.is_task) {  // LinuxCNC's rs274 prints no wait
+        if (settings.is_task) {  // LinuxCNC's rs274 prints no call for the wait
             canon.take(WaitOrientComplete{spindle, PATIENCE_S});
         }
     };
@@ -325,13 +326,14 @@ Effect run_canned_cycle(GCode code, const BlockValues &values, State &state, Cod
     CycleMoves moves{parts.settings, state, parts.canon};
     CyclePlan plan;
     plan.code = code;
-    // Incremental R is relative to the start of the sequence of cycles, so that all holes are equal.
+    // Incremental R is relative to the start of the sequence of cycles, so that all holes have the same
+    // depth.
     plan.r = state.cycle.r + (state.incremental ? state.cycle.initial : 0.0);
     plan.bottom = state.cycle.bottom + (state.incremental ? plan.r : 0.0);
     if (plan.r < plan.bottom) {
         return values.fail(fmt::format("R value less than {} value in cycle", normal_name), 'r');
     }
-    constexpr double MOST_MOVES = 1e6;  // probably a typing error
+    constexpr double MOST_MOVES = 1e6;  // more moves are probably a typing error
     const double pecks = needsPeck(code) ? count_pecks(plan, state.cycle.q) : 1.0;
     if (pecks * repeats > MOST_MOVES) {
         return values.fail(
@@ -345,7 +347,7 @@ Effect run_canned_cycle(GCode code, const BlockValues &values, State &state, Cod
         return false;
     }
     const geometry::PathMode control = state.control;
-    // In a sequence that began below R every cycle makes this move; it has length only in the first one.
+    // If a sequence began below R, every cycle makes this move; it has length zero except in the first cycle.
     const double height = state.position[axes.normal];
     if (height < plan.r || (height == plan.r && state.cycle.initial < plan.r)) {
         moves.cycle_move(true, axes.normal, plan.r);

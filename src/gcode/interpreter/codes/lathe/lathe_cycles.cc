@@ -16,8 +16,8 @@ namespace {
 
 constexpr int Z = geometry::AXIS_Z, X = geometry::AXIS_X;
 
-/// How far an arc of a profile may go back before the profile counts as not monotonic: arcs with rounded
-/// numbers that touch a shoulder go back a little.
+/// Maximum distance that an arc of a profile may go back while the profile counts as monotonic. Arcs with
+/// rounded numbers that touch a shoulder go back slightly.
 constexpr double TOLERANCE_MM = 0.001, TOLERANCE_INCH = TOLERANCE_MM / 25.4;
 
 /// A profile in the frame of its cut.
@@ -28,7 +28,7 @@ struct FramedProfile {
 
 /// True if the profile is for cuts along X. G70 follows the last roughing with the same subroutine; without
 /// one, a profile for both directions is for cuts along Z, if that puts the distance D on the same side. If
-/// undecided, the text after "The profile of Gxx ".
+/// this cannot be decided, returns the text after "The profile of Gxx ".
 std::expected<bool, std::string> choose_facing(const LatheRequest &request, std::optional<bool> roughed,
                                                double tolerance) {
     if (request.code != G(70)) {
@@ -51,8 +51,8 @@ std::expected<bool, std::string> choose_facing(const LatheRequest &request, std:
     return roughed.value_or(false);
 }
 
-/// The profile with its corners in the frame of its cut. If it cannot be cut, the text after "The profile of
-/// Gxx ".
+/// The profile with its corners in the frame of its cut. If it cannot be cut, returns the text after "The
+/// profile of Gxx ".
 std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, bool isFacing,
                                                          double tolerance) {
     FramedProfile framed;
@@ -68,7 +68,7 @@ std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, boo
     return framed;
 }
 
-/// The contour of one pass; without arcs that go back, if it is used for more than following.
+/// The contour of one pass. Arcs that go back are removed unless the pass only follows the contour.
 Profile contour_of(const Profile &profile, bool followed, double tolerance) {
     Profile contour = profile;
     if (!followed) {
@@ -85,7 +85,7 @@ bool isEndingAbove(const Profile &profile) {
     return profile.back().end.y > profile.front().end.y;
 }
 
-/// Adds a move from the end of the cut across to `height`, at feed: there may be material.
+/// Adds a move from the end of the cut to `height`, at feed, because there may be material.
 void add_way_out(Profile &cut, double height) {
     const Point end = cut.back().end;
     if (end.y < height) {
@@ -106,7 +106,8 @@ double clear_height(const Profile &cut) {
     return height;
 }
 
-/// The start of the cycle is inside the profile's range in X (facing: Z), so no side is free of material.
+/// Reports that the start of the cycle is inside the profile's range in X (facing: Z), so that no side is
+/// free of material.
 bool refuse_side(const LatheRequest &request, const CutFrame &cut, std::string_view name, bool is_diameter,
                  Fault &fault) {
     const auto highest = [&](double across) {
@@ -259,7 +260,7 @@ bool LatheCycles::record(const BlockValues &values, const Settings &settings, co
             request.profile.push_back(line);
         }
         done = record_arc(values, settings, state, from, end);
-    } else if (first || moving) {  // the first move goes to the contour, at any distance
+    } else if (first || moving) {  // the first move goes to the contour and may have any length
         request.profile.push_back(line);
     }
     return done && take_corner_word(values);
@@ -326,7 +327,7 @@ bool LatheCycles::cut(const LatheRequest &request, State &state, CanonQueue &can
     if (!send_profile_move(rapid({request.start[Z], request.start[X]}), {}, state, canon, fault)) {
         return false;
     }
-    if (request.profile.size() < 2) {  // only the move to its start
+    if (request.profile.size() < 2) {  // the profile contains only the move to its start
         return true;
     }
     const double tolerance = state.units == LengthUnits::MM ? TOLERANCE_MM : TOLERANCE_INCH;
@@ -369,7 +370,7 @@ bool LatheCycles::cut(const LatheRequest &request, State &state, CanonQueue &can
             return fault.set(fmt::format("{} would make more than a million moves: is I too small?", name));
         }
         if (finishing && pass > 0) {
-            if (back.y > begin.y) {  // moves above the contour first
+            if (back.y > begin.y) {  // first moves above the contour
                 moves->push_back(rapid(back));
             }
             moves->push_back(to_begin);

@@ -16,7 +16,7 @@ namespace mw::gcode::detail {
 /// The cycle whose profile is being read, and the last roughing cycle.
 class LatheCycles {
   public:
-    /// The following blocks are the profile.
+    /// Begins to read the profile from the following blocks.
     void open(LatheRequest request) { request_ = std::move(request); }
     const LatheRequest *request() const { return request_ ? &*request_ : nullptr; }
     /// Records the move of a block of the profile's subroutine, if it has one. False after setting the fault.
@@ -25,13 +25,13 @@ class LatheCycles {
     bool finish(State &state, CanonQueue &canon, Fault &fault);
     /// Discards the profile.
     void drop() { request_.reset(); }
-    /// The program has ended: no G70 follows the last roughing.
+    /// Called at the end of the program: a later G70 does not use the last roughing.
     void forget_roughing() { roughed_.reset(); }
 
   private:
     /// The last roughing cycle of the program, for the G70 that follows it.
     struct Roughed {
-        int label = 0;  ///< of the profile's subroutine
+        int label = 0;  ///< label of the profile's subroutine
         bool isFacing = false;
     };
     bool record_arc(const BlockValues &values, const Settings &settings, const State &state, const Pose &from,

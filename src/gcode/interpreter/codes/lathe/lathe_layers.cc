@@ -8,7 +8,7 @@ namespace mw::gcode::detail {
 namespace {
 
 constexpr double TINY = 1e-9;
-constexpr std::size_t MOST_MOVES = 1000000;  // maximum for one cycle
+constexpr std::size_t MOST_MOVES = 1000000;  // maximum number of moves for one cycle
 
 /// Point of a segment without extremes at height `y`, which lies between its ends.
 Point at_height(const ProfileSegment &segment, double y) {

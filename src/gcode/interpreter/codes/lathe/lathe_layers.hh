@@ -22,20 +22,21 @@ struct RoughingPlan {
     enum class Pockets { ALL, SKIP, ONLY };  ///< G71, G71.1, G71.2
     Pockets pockets = Pockets::ALL;
     double increment = 1, retract = 0.5;
-    double narrowest = 0;  ///< a shorter layer is cut in both directions: it has no space to retract
-    bool is_visiting_starts = false;  ///< G71.1: a move without length to where each segment begins, as
-                                      ///< LinuxCNC prints it
+    double narrowest = 0;  ///< a shorter layer is cut in both directions, because the tool cannot retract
+                           ///< within it
+    bool is_visiting_starts = false;  ///< G71.1: a move without length to the start of each segment, as
+                                      ///< printed by LinuxCNC
 };
 
 /// A cycle whose profile is being read from its subroutine.
 struct LatheRequest {
     GCode code{};
-    int label = 0;  ///< Q: the subroutine
+    int label = 0;  ///< Q: label of the subroutine
     Pose start;     ///< start of the cycle
     RoughingPlan roughing;
     double distance = 0, end_distance = 0;  ///< D, and E of G70
     int passes = 1;                         ///< P of G70
-    GCode motion = G(1);                    ///< of the profile's moves
+    GCode motion = G(1);                    ///< motion code of the profile's moves
     Pose position;                          ///< end of the profile so far
     Profile profile;                        ///< x along Z, y along X
 };

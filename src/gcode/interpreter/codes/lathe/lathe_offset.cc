@@ -37,8 +37,8 @@ ProfileSegment line(Point from, Point to) {
     return one;
 }
 
-/// The arc through its own end points: rounded numbers of a programmed arc may give two radii, and a single
-/// one would miss an end by their difference.
+/// The arc through its own end points: the rounded numbers of a programmed arc may give two radii, and with a
+/// single radius the arc would miss one end.
 ProfileSegment with_one_radius(const ProfileSegment &segment) {
     ProfileSegment out = segment;
     if (segment.isArc && distance(segment.start, segment.end) > SAME_X) {
@@ -61,13 +61,14 @@ ProfileSegment around(Point corner, Point from, Point to, double by) {
     return arc;
 }
 
-/// Intersection of the offset neighbours of a nearly straight corner, extended if necessary. None if it is
-/// not near their ends.
+/// Intersection of the offset neighbours of a nearly straight corner, extended if necessary. Empty if the
+/// intersection is not near their ends.
 std::optional<Point> meeting_point(const ProfileSegment &before, const ProfileSegment &after, Point corner,
                                    double by, double tolerance) {
     const double near = 100.0 * tolerance;
     Crossings found = crossings(before, after);
-    if (found.count == 0 && before.isArc != after.isArc) {  // they pass each other by less than rounding
+    // An arc that misses the line by less than the rounding error counts as tangent.
+    if (found.count == 0 && before.isArc != after.isArc) {
         const ProfileSegment &arc = before.isArc ? before : after, &straight = before.isArc ? after : before;
         const Point along = unit(straight.start, straight.end);
         const Point to_centre{arc.centre.x - straight.start.x, arc.centre.y - straight.start.y};
@@ -88,7 +89,7 @@ std::optional<Point> meeting_point(const ProfileSegment &before, const ProfileSe
     return best;
 }
 
-/// Appends a piece, and a line to it across the gap that rounded numbers of an arc leave.
+/// Appends a piece. If rounded numbers of an arc leave a gap, a line closes it.
 void append_piece(Profile &chain, const ProfileSegment &piece) {
     if (!chain.empty() && piece.start.x > chain.back().end.x) {
         chain.push_back(line(chain.back().end, piece.start));
@@ -116,8 +117,7 @@ void join(Profile &chain, const ProfileSegment &before, const ProfileSegment &af
             return;
         }
     }
-    // Up and down is a peak, down and up a slit, independent of the direction in which rounding turns the
-    // two.
+    // Up and down is a peak, down and up a slit, independent of the rounding of both directions.
     const bool folded = dot(from, to) < 0.0 && from.y * to.y < 0.0;
     if (folded ? from.y > 0.0 : bend < -STRAIGHT) {
         append_piece(chain, around(corner, from, to, by));
@@ -256,7 +256,7 @@ Profile offset_profile(const Profile &programmed, double by, double tolerance) {
     const Point end = sum(last.end, {-heading.y, heading.x}, by);
     const bool is_rising_at_end = heading.y > SAME_HEIGHT;
     Profile all = chain;
-    if (is_rising_at_end) {  // its own end covers the profile behind it
+    if (is_rising_at_end) {  // the end of the segment covers the profile behind it
         append_piece(all, around(last.end, heading, {1.0, 0.0}, by));
     }
     Profile pieces;

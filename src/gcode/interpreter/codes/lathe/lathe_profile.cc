@@ -68,7 +68,7 @@ bool make_fillet(ProfileSegment &a, ProfileSegment &b, ProfileSegment &fillet) {
     return true;
 }
 
-/// How far an arc goes back along x at one of its ends: 0 for most.
+/// Distance that an arc goes back along x at one of its ends: 0 for most arcs.
 double setback(const ProfileSegment &arc, Point at) {
     return direction(arc, at).x < 0.0 ? radius_of(arc) - std::fabs(at.x - arc.centre.x) : 0.0;
 }
@@ -159,7 +159,7 @@ std::optional<ProfileSegment> moved(const ProfileSegment &segment, double by) {
     if (radius < TINY) {
         return std::nullopt;
     }
-    // One radius, although the numbers of a programmed arc may give two.
+    // The segment has one radius, although the numbers of a programmed arc may give two.
     out.start = sum(segment.centre, unit(segment.centre, segment.start), radius);
     out.end = sum(segment.centre, unit(segment.centre, segment.end), radius);
     return out;

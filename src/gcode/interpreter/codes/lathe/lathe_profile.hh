@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The contour of the lathe cycles G70 to G72: lines and arcs in a separate frame, in which the cut runs
-// towards larger x and the material lies below the tool, towards smaller y. Pure geometry; lengths in program
+// towards larger x and the material is below the tool, towards smaller y. Pure geometry; lengths in program
 // units.
 #pragma once
 
@@ -19,7 +19,7 @@ struct ProfileSegment {
     int turn = 1;             ///< +1 counterclockwise
     double fillet = 0;        ///< corner at the end: radius of the word A or C
     bool is_chamfer = false;  ///< the corner is cut by a line between the fillet's ends
-    int source = 0;           ///< equal for all pieces of one arc
+    int source = 0;           ///< equal for all segments of one arc
 };
 
 /// The first segment leads from the cycle's start to the first point of the contour.
@@ -28,7 +28,7 @@ using Profile = std::vector<ProfileSegment>;
 /// From (Z, X) to the frame of a cut, and back.
 struct CutFrame {
     bool isFacing = false;   ///< the cut runs along X
-    bool side_clear = true;  ///< the start determines on which side of the profile the material is
+    bool side_clear = true;  ///< the side of the material is determined by the start of the cycle
     double along = 1, across = 1;
 
     Point to(Point p) const {
@@ -47,13 +47,13 @@ Profile in_frame(const Profile &profile, const CutFrame &frame);
 CutFrame frame_of(const Profile &profile, bool isFacing);
 
 double radius_of(const ProfileSegment &arc);
-/// Direction of travel at `at`, which lies on the segment.
+/// Direction of travel at `at`, a point of the segment.
 Point direction(const ProfileSegment &segment, Point at);
 /// Angle of an arc from `from` to `to`, 0 to a full circle [rad].
 double sweep(const ProfileSegment &arc, Point from, Point to);
 /// Crossings of the infinite lines or full circles of two segments.
 Crossings crossings(const ProfileSegment &a, const ProfileSegment &b);
-/// The segment offset to its left by `by`. None when an arc vanishes.
+/// The segment offset to its left by `by`. Empty if an arc vanishes.
 std::optional<ProfileSegment> moved(const ProfileSegment &segment, double by);
 /// Splits arcs at their highest or lowest point: each piece is monotonic in height.
 Profile split_arcs(const Profile &profile);
@@ -61,7 +61,7 @@ bool isDescending(const ProfileSegment &segment);
 /// Maximum height of a segment.
 double top_of(const ProfileSegment &segment);
 
-/// Inserts fillets and chamfers. False where one does not fit.
+/// Inserts fillets and chamfers. False if one of them does not fit.
 bool round_corners(Profile &profile);
 /// True if no segment after the first goes back by more than `tolerance`, as arcs with rounded numbers at a
 /// shoulder do.

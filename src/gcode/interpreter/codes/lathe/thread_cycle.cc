@@ -80,14 +80,14 @@ bool check_thread_cycle(const BlockValues &values, const State &state, const Cod
 }
 
 /// Number of passes without spring passes: the first n whose depth J * n^(1/R) reaches K, so n = (K / J)^R
-/// rounded up. The tolerance is the rounding error of J, K and R carried through the power.
+/// rounded up. The tolerance is the rounding error of J, K and R, propagated through the power.
 double count_passes(const ThreadPlan &plan) {
     const double ratio = plan.full_depth / plan.first_cut;
     const double passes = std::pow(ratio, plan.degression);
     return count_steps(passes, passes * FIGURE_ERROR * (1.0 + plan.degression * (2.0 + std::log(ratio))));
 }
 
-/// One cut at `depth` below the peaks, infeed along the flank.
+/// One cut at `depth` below the crests, with infeed along the flank.
 void thread_pass(const ThreadPlan &plan, double depth, State &state, CanonQueue &canon) {
     const double rest = plan.full_depth - depth;
     const double cut_x = plan.peak_x + plan.inward * depth;

@@ -43,7 +43,7 @@ Effect set_units(GCode code, const BlockValues &values, State &state, CodeParts 
         state.cycle.bottom *= factor;
         state.cycle.r *= factor;
         state.cycle.q *= factor;
-        state.tolerance *= factor;  // cycles set them again
+        state.tolerance *= factor;  // cycles set these values again
         state.naivecam *= factor;
     }
     parts.canon.take(UseLengthUnits{units});

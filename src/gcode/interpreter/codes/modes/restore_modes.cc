@@ -129,7 +129,7 @@ void Restoring::restore_overrides(const State &saved) {
     state.is_feed_hold = saved.is_feed_hold;
 }
 
-/// Does not change positions, motion mode, tool and offsets of coordinate systems.
+/// Restores modes, but not positions, motion mode, tool and offsets of coordinate systems.
 bool Restoring::restore(const State &saved) {
     if (saved.units != state.units && !run(saved.units == LengthUnits::INCH ? G(20) : G(21))) {
         return false;

@@ -11,8 +11,8 @@ namespace mw::gcode::detail {
 namespace {
 
 /// Permitted difference of the radii at the start and end of an arc: coordinates rounded to 0.01 mm or 0.001
-/// inch at both ends, in both axes. For arcs so large that this is below RELATIVE_TOLERANCE, up to a hundred
-/// times as much.
+/// inch at both ends, in both axes. For large arcs, for which this is below RELATIVE_TOLERANCE, up to a
+/// hundred times as much.
 constexpr double TOLERANCE_MM = 0.02 * std::numbers::sqrt2, TOLERANCE_INCH = 0.002 * std::numbers::sqrt2;
 constexpr double LARGE_FACTOR = 100.0;
 constexpr double RELATIVE_TOLERANCE = 0.001;
@@ -70,7 +70,7 @@ bool plan_centre_arc(const BlockValues &values, const State &state, ArcPlan &arc
     return true;
 }
 
-/// R > 0: the arc of at most 180 degrees; R < 0: the other one.
+/// R > 0: the arc of at most 180 degrees; R < 0: the arc of more than 180 degrees.
 bool plan_radius_arc(const BlockValues &values, const Settings &settings, const State &state, ArcPlan &arc) {
     const PlaneAxes axes = plane_axes(state.plane);
     const double x0 = state.position[axes.first], y0 = state.position[axes.second];

@@ -11,7 +11,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// True for a word of an indexer; check_rotary() ensures that it is the only one.
+/// True for a word of an indexer; check_rotary() ensures that it is the only axis word.
 bool isIndexing(const BlockValues &values, const State &state) {
     for (int axis = RotaryAxes::FIRST; axis <= RotaryAxes::LAST; ++axis) {
         if (state.rotary.isIndexer(axis) && values.has(geometry::AXIS_LETTERS_LOWER[axis])) {
@@ -31,7 +31,7 @@ Effect move_straight(GCode code, const BlockValues &values, State &state, CodePa
     if (values.hasAxes() && !straight_target(values, state, end)) {
         return false;
     }
-    // Without compensation nothing fails after this: see isStateSafe().
+    // Without compensation nothing can fail after this point, see isStateSafe().
     state.motion = code;
     state.cycle.running = false;
     if (!values.hasAxes()) {
@@ -169,7 +169,7 @@ Effect move_probe(GCode code, const BlockValues &values, State &state, CodeParts
     state.comp.set_exit(false);
     parts.canon.take(StraightProbe{end, static_cast<ProbeKind>(number_of(code) - number_of(G(38, 2)))});
     state.position = end;
-    // Until the machine reports the result, assumes the end position without contact.
+    // The end position without contact, until the machine reports the result.
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
         parts.parameters.set(P_PROBE_RESULT + axis, end[axis]);
     }

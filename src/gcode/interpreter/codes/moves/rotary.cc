@@ -12,7 +12,7 @@ constexpr double TURN = 360;
 /// Angles closer than this are equal: sums of angles are rounded. [degrees]
 constexpr double SAME_ANGLE = 1e-6;
 
-/// G90 and G91 apply from their own block on.
+/// True if G91 applies; G90 and G91 apply from their own block on.
 bool isIncremental(const BlockValues &values, const State &state) {
     bool is = state.incremental;
     for (const ActiveCode &active : values.codes) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t MOST_POINTS = 100'000;
 
-/// Checks common to all splines; `plane_free` when any plane is permitted.
+/// Checks common to all splines; `plane_free` if any plane is permitted.
 bool check_spline(const BlockValues &values, std::string_view code, bool plane_free, const State &state) {
     if (!check_feed(values, code, state)) {
         return false;
@@ -49,7 +49,7 @@ bool send_nurbs(NurbsFeed nurbs, State &state, CanonQueue &canon) {
     return true;
 }
 
-/// Points after the count are left over from failed blocks.
+/// Points after the count remain from failed blocks.
 void keep_control_point(const NurbsPoint &point, std::vector<NurbsPoint> &points, State &state) {
     points.resize(state.spline.count);
     points.push_back(point);
@@ -155,7 +155,7 @@ Effect add_nurbs_point(GCode code, const BlockValues &values, State &state, Code
     if (state.spline.count >= MOST_POINTS) {
         return values.fail(fmt::format("A NURBS has at most {} control points", MOST_POINTS));
     }
-    state.spline.end = target(values, state);  // incremental parts.control_points are relative to the start
+    state.spline.end = target(values, state);  // incremental control points are relative to the start
     keep_control_point({state.spline.end[axes.first], state.spline.end[axes.second], weight},
                        parts.control_points, state);
     return true;

@@ -9,7 +9,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-/// G96 without D: practically no limit [rev/min].
+/// G96 without D: practically unlimited [rev/min].
 constexpr double UNLIMITED_RPM = 1e30;
 
 }  // namespace

@@ -81,7 +81,7 @@ bool set_tool_data(int l, const BlockValues &values, State &state, CodeParts &pa
     }
     put_tool_entry(index, entry, parts);
     if (index == state.tool.index) {
-        if (!tools.isRandom()) {  // its spindle entry is the tool itself, not a copy
+        if (!tools.isRandom()) {  // the spindle entry of a random changer is the tool itself, not a copy
             put_tool_entry(0, entry, parts);
         }
         const int was = state.tool.in_spindle;

@@ -8,8 +8,8 @@
 
 namespace mw::gcode::detail {
 
-/// Entries set by G10 override those of the source until the owner of the table has them. A change takes
-/// effect at once and is dropped when its block fails.
+/// Entries set by G10 override those of the source until the owner of the table has stored them. A change
+/// takes effect at once and is dropped when its block fails.
 class ToolTable {
   public:
     explicit ToolTable(const ToolSource &source) : source_(source) {}
@@ -22,7 +22,7 @@ class ToolTable {
     void commit();
     void rollback() { of_block_.clear(); }
     bool hasChanges() const { return !changes_.empty(); }
-    /// The source has all changes.
+    /// Called when the source has all changes.
     void forget() { changes_.clear(); }
 
   private:

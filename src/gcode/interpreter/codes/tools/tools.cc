@@ -26,7 +26,7 @@ void take_hidden_rapid(const Pose &end, State &state, CanonQueue &canon) {
     canon.take(ProgramComment{"AXIS,show"});
 }
 
-/// Moves to the tool change position: first up, then across.
+/// Moves to the tool change position: first Z, then the other axes.
 void go_to_change(State &state, CodeParts &parts) {
     if (parts.settings.tool_change.quill_raised) {
         Pose up = state.frame.to_machine(state.position);
@@ -142,7 +142,8 @@ Effect set_tool_number(GCode, const BlockValues &values, State &state, CodeParts
     parts.canon.take(ChangeToolNumber{toolno});
     load_tool(parts.tools, state.tool, index);
     retain_tool_offset(state, parts);
-    return parts.tools.isRandom() ? Outcome::SYNC : Outcome::OK;  // tools have changed their positions
+    // the changer has changed the positions of tools
+    return parts.tools.isRandom() ? Outcome::SYNC : Outcome::OK;
 }
 
 Effect set_tool_offset(GCode code, const BlockValues &values, State &state, CodeParts &parts) {
