@@ -40,7 +40,7 @@ Client::~Client() {
 
 void Client::leave() noexcept {
     if (hasPlace_) {
-        // Release: task sees everything that was posted before.
+        // Release: task sees everything that this client posted before.
         slot().isLeaving.store(1, std::memory_order_release);
         hasPlace_ = false;
     }
@@ -53,13 +53,13 @@ Result<Client> Client::join(mailbox::Segment &segment, Role role, Places places)
 Result<Client> Client::join(Viewer viewer, Role role, Places places) {
     mailbox::Segment &segment = viewer.segment();
     const std::uint64_t me = mailbox::owner_word();
-    // Before the slot: task reads no more slots than numbers were assigned.
+    // Gets the number before the slot, because task reads no more slots than numbers were assigned.
     const mailbox::ClientId id = segment.client_ids.fetch_add(1, std::memory_order_acq_rel) + 1;
     const int first = places == Places::RESERVED ? 0 : mailbox::RESERVED_CLIENTS;
     for (int i = first; i < mailbox::MAX_CLIENTS; ++i) {
         mailbox::Slot &slot = segment.slots[static_cast<std::size_t>(i)];
         std::uint64_t expected = 0;
-        // Acquire: pairs with task's release when it freed the place.
+        // Acquire: pairs with task's release when it freed the slot.
         if (!slot.owner.compare_exchange_strong(expected, me, std::memory_order_acq_rel)) {
             continue;
         }
@@ -80,7 +80,7 @@ Result<Client> Client::connect(const std::string &instance, Role role, Places pl
 void Client::limit_authority(mailbox::Authority most) {
     const auto value = static_cast<std::uint8_t>(most);
     if (value < slot().authority.load(std::memory_order_relaxed)) {
-        // The command that is posted next releases it.
+        // The next posted command releases it.
         slot().authority.store(value, std::memory_order_relaxed);
     }
 }
@@ -119,10 +119,10 @@ void Client::announce() const {
 
 Serial Client::post_stop(int place) {
     const Serial serial = viewer_.segment().serials.fetch_add(1, std::memory_order_relaxed) + 1;
-    // Release: task, which sees the stop, sees all that was posted before it.
+    // Release: when task sees the stop, it sees everything posted before the stop.
     const Serial before =
         slot().stops[static_cast<std::size_t>(place)].exchange(serial, std::memory_order_acq_rel);
-    // Release: task, which sees the number, sees the stop in its place.
+    // Release: when task sees the number, it sees the stop in its slot.
     slot().newest_stop.store(serial, std::memory_order_release);
     posted_stops_.push_back({serial, place});
     announce();
@@ -137,7 +137,7 @@ Serial Client::post_stop(int place) {
 
 bool Client::isStopWaiting(Serial serial) {
     std::erase_if(posted_stops_, [this](const PostedStop &stop) {
-        // Acquire: pairs with task's clearing of it after it wrote the outcome.
+        // Acquire: pairs with task's clearing of the slot after it wrote the outcome.
         return slot().stops[static_cast<std::size_t>(stop.place)].load(std::memory_order_acquire) !=
                stop.serial;
     });
@@ -146,20 +146,22 @@ bool Client::isStopWaiting(Serial serial) {
 }
 
 Outcome Client::outcome(Serial serial) {
-    for (const auto &[before, later] : replaced_stops_) {  // in their order: a later one may be replaced too
+    // checked in order, because a later stop may be replaced, too
+    for (const auto &[before, later] : replaced_stops_) {
         serial = before == serial ? later : serial;
     }
     if (!isTaken(serial)) {
         return {};
     }
-    // Before the outcomes: the next call reads those that are reported later.
+    // Read before the outcomes, so that the next call reads outcomes reported later.
     const std::uint64_t told = slot().told.load(std::memory_order_acquire);
     if (found_.serial == serial && found_.told == told) {
         return found_.outcome;
     }
     const auto &outcomes = slot().outcomes;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
-        const std::size_t place = (found_.place + i) % outcomes.size();  // mostly requested again
+        // the same outcome is often requested again
+        const std::size_t place = (found_.place + i) % outcomes.size();
         mailbox::Outcome outcome;
         if (viewer_.read_whole(outcomes[place], outcome) && outcome.serial == serial) {
             found_ = {serial, told, place, {outcome.progress, outcome.reason.str()}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A client of a machine: commands with their outcome, status, messages. In the machine's process or in
-// another.
+// A client of a machine: commands with their outcome, status, messages. The machine runs in this process or
+// in another process.
 #pragma once
 
 #include <deque>
@@ -19,53 +19,53 @@ using mailbox::Places;
 using mailbox::Role;
 using mailbox::Serial;
 
-/// Progress of a command, or how it has ended.
+/// Progress of a command, or its result.
 struct Outcome {
     messages::Progress progress = messages::Progress::STARTED;
-    std::string reason;  ///< of a rejection or failure
+    std::string reason;  ///< reason of a rejection or failure
 };
 
-/// One thread. Frees its slot when it is destroyed; what it has started continues.
+/// For one thread. The destructor frees the client's slot; commands that it has started continue.
 class Client {
   public:
-    /// Of a machine in another process, by the name of its instance.
+    /// Connects to a machine in another process, by the name of its instance.
     static Result<Client> connect(const std::string &instance, Role role = Role::OPERATOR,
                                   Places places = Places::ORDINARY);
-    /// Of a machine in this process, which must outlive it.
+    /// Joins a machine in this process, which must outlive the client.
     static Result<Client> join(mailbox::Segment &segment, Role role = Role::OPERATOR,
                                Places places = Places::ORDINARY);
-    /// Of the machine that the viewer sees, on this computer or another one.
+    /// Joins the machine of the viewer, on this computer or a remote computer.
     static Result<Client> join(Viewer viewer, Role role = Role::OPERATOR, Places places = Places::ORDINARY);
     ~Client();
     Client(Client &&other) noexcept;
     Client &operator=(Client &&other) noexcept;
 
-    /// Reduces the authority of all further commands; it cannot be increased again. For programs that pass
+    /// Reduces the authority of all further commands; it cannot be increased again. For programs that forward
     /// commands of other programs.
     void limit_authority(mailbox::Authority most);
 
-    /// Number of this client, as the right to operate names it.
+    /// Number of this client, by which the right to operate identifies it.
     mailbox::ClientId id() const { return id_; }
 
-    /// Posts a command and returns its number among those of all clients. An error when a value is out of
-    /// range or MAX_POSTED commands wait. A stop is always accepted.
+    /// Posts a command and returns its number, which is unique among all clients. An error when a value is
+    /// out of range or MAX_POSTED commands wait. A stop is always accepted.
     Result<Serial> post(const messages::Command &command);
-    /// STARTED also while it waits for task. A command that task no longer remembers is rejected, and the
-    /// reason states it.
+    /// Progress of a command; STARTED also while it waits for task. A command that task no longer stores is
+    /// reported as rejected, with this reason.
     Outcome outcome(Serial serial);
-    /// Sleeps until the command ends; an error when the time is over or the machine has ended.
+    /// Sleeps until the command ends; an error after the timeout or when the machine has ended.
     Result<Outcome> wait(Serial serial, double timeout_s);
 
     /// Sleeps until task has taken the command, before its outcome.
     Result<> wait_taken(Serial serial, double timeout_s);
 
-    /// Sleeps at the bell until `isOver()`, as Viewer::wait_until.
+    /// Sleeps until `isOver()`, as Viewer::wait_until.
     template <class IsOver>
     Result<> wait_until(const IsOver &isOver, double timeout_s) {
         return viewer_.wait_until(isOver, timeout_s);
     }
 
-    // What it sees, as any viewer (messages/client/viewer.hh).
+    // The client reads the machine as any viewer (messages/client/viewer.hh).
     using Message = Viewer::Message;
     mailbox::Identity identity() const { return viewer_.identity(); }
     bool isMachineAlive() const { return viewer_.isMachineAlive(); }
@@ -95,7 +95,7 @@ class Client {
     bool hasPlace_ = true;  ///< false after a move
     int slot_ = 0;
     mailbox::ClientId id_ = 0;
-    /// The outcome that was requested last, its position, and the number of outcomes reported by then.
+    /// The outcome that was requested last, its position, and the number of outcomes reported at that time.
     struct Found {
         Serial serial = 0;
         std::uint64_t told = 0;
@@ -106,8 +106,8 @@ class Client {
         Serial serial = 0;
         int place = 0;
     };
-    std::vector<PostedStop> posted_stops_;  ///< beside the queue, not seen as taken yet
-    /// Stops that a later one of the same type has replaced: number, and that of the later one.
+    std::vector<PostedStop> posted_stops_;  ///< stops beside the queue that task has not taken yet
+    /// Stops replaced by a later stop of the same type: their number, and the number of the later stop.
     std::deque<std::pair<Serial, Serial>> replaced_stops_;
 };
 

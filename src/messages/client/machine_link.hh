@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The connection to a machine on another computer, as Viewer and Client use it.
+// The connection to a machine on a remote computer, for Viewer and Client.
 #pragma once
 
 #include "base/result.hh"
@@ -7,8 +7,8 @@
 
 namespace mw::client {
 
-/// Keeps a mailbox in this process that has the state of the remote machine, and sends to that machine what
-/// clients post. Any thread.
+/// Keeps a mailbox in this process with the state of the remote machine, and sends the commands that clients
+/// post to that machine. Any thread.
 class MachineLink {
   public:
     MachineLink() = default;
@@ -17,11 +17,12 @@ class MachineLink {
     virtual ~MachineLink() = default;
 
     virtual mailbox::Segment &segment() = 0;
-    /// An error once the connection is lost: host, reason, what to check. It stays lost.
+    /// An error when the connection is lost, with the host, the reason and what to check. A lost connection
+    /// is not restored.
     virtual Result<> check() const = 0;
-    /// A client has posted a command.
+    /// Called when a client has posted a command.
     virtual void command_posted() = 0;
-    /// Messages for the operator are received from now on: each goes to one reader only.
+    /// From now on messages for the operator are received. Each message is delivered to one reader only.
     virtual void request_messages() = 0;
     /// An error when the remote machine does not provide its tool table.
     virtual Result<> check_tools() const = 0;

@@ -15,7 +15,7 @@ namespace mw::client {
 namespace {
 
 constexpr std::int64_t NS_PER_S = 1000000000;
-/// A sleeper looks after so long whether the machine still lives.
+/// Maximum sleep before the process checks again whether the machine is alive.
 constexpr std::int64_t LONGEST_SLEEP_NS = 100000000;
 
 std::int64_t monotonic_ns() {
@@ -24,7 +24,7 @@ std::int64_t monotonic_ns() {
     return now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
-/// Raises `count` to `number`; false when it is as high already.
+/// Raises `count` to `number`; false when it is not lower.
 bool raise(std::atomic<std::uint64_t> &count, std::uint64_t number) {
     std::uint64_t now = count.load(std::memory_order_relaxed);
     while (now < number) {
@@ -143,7 +143,8 @@ std::optional<Viewer::Message> Viewer::next_message(Reading reading) {
     }
     auto read = std::make_unique<mailbox::NumberedMessage>();
     const bool whole = read_whole(segment_->messages[next_message_ % mailbox::MAX_MESSAGES], *read);
-    if (!whole || read->number != next_message_) {  // overwritten meanwhile, or task died within it
+    // the message was overwritten, or task died while it wrote the message
+    if (!whole || read->number != next_message_) {
         const std::uint64_t now = segment_->newest_message.load(std::memory_order_acquire);
         const std::uint64_t oldest =
             now > mailbox::MAX_MESSAGES ? now - mailbox::MAX_MESSAGES + 2 : next_message_ + 1;

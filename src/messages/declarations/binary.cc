@@ -57,7 +57,7 @@ void encode_parts(const ConstObject &message, std::string &bytes) {
     }
 }
 
-/// Takes bytes from the front; knows when there are none left.
+/// Takes bytes from the front and detects the end of the data.
 class Reader {
   public:
     explicit Reader(std::string_view bytes) : bytes_(bytes) {}
@@ -130,7 +130,7 @@ class Decoder {
         if (!std::isfinite(field.range.max) || count > field.range.max) {
             return bad(field, fmt::format("{} entries are more than it may have", count));
         }
-        if (count > reader_.left()) {  // each entry has a byte at least
+        if (count > reader_.left()) {  // each entry has at least one byte
             return bad(field, "the message ends within it");
         }
         field.type.list->resize(at, count);

@@ -15,7 +15,7 @@
 namespace mw::messages {
 namespace {
 
-/// What a command of the variant's alternative is made and reached by.
+/// Functions that create and access an alternative of the variant.
 struct Alternative {
     const Declaration *declaration;
     Command (*make)();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Are the values of a message within the ranges that it declares?
+// Checks the values of a message against the ranges in its declaration.
 #pragma once
 
 #include "base/result.hh"
@@ -7,7 +7,7 @@
 
 namespace mw::messages {
 
-/// The error names message, field, value and range. A real number must be a finite one.
+/// An error names message, field, value and range. A real number must be finite.
 Result<> check(const ConstObject &message);
 
 }  // namespace mw::messages

@@ -14,8 +14,8 @@ Command &Command::operator=(const Command &other) {
     return *this = Command(other);
 }
 
-/// Constructs the alternative again: compiling the assignment of one alternative to each other takes longer
-/// than all the rest.
+/// Constructs the alternative again. An assignment operator for each pair of alternatives would take long to
+/// compile.
 Command &Command::operator=(Command &&other) noexcept {
     if (this != &other) {
         std::destroy_at(this);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every command: what an operator, a screen or another program requests of the machine. Each ends as
+// All commands: requests of an operator, a screen or another program to the machine. Each command ends as
 // done, or as rejected or failed with a reason.
 #pragma once
 
@@ -39,7 +39,7 @@ inline constexpr std::size_t INDEX_IN<Message, std::variant<All...>> = [] {
     return static_cast<std::size_t>(std::find(IS_IT.begin(), IS_IT.end(), true) - IS_IT.begin());
 }();
 
-/// One of them. The operations of this large variant are compiled once, in command.cc.
+/// One of the commands. The operations of this large variant are compiled once, in command.cc.
 class Command : public CommandVariant {
   public:
     using Variant = CommandVariant;
@@ -53,7 +53,7 @@ class Command : public CommandVariant {
     ~Command();
 
   private:
-    /// `message` is the alternative of that index; it is moved from.
+    /// `message` is the alternative with that index; its content is moved.
     Command(std::size_t index, void *message);
 };
 

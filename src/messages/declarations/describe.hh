@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How a message is declared: once, beside its struct. Codecs, checks, lookups and the reference page read
-// these tables at run time; no code is made for a single message.
+// Declaration of a message, written once beside its struct. Codecs, checks, lookups and the reference page
+// read these tables at run time, so a message needs no code of its own.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ inline constexpr const char *NANOSECOND = "ns";
 inline constexpr const char *FACTOR = "1.0 is 100 %";
 }  // namespace unit
 
-/// Both ends belong to it. Of a text: its length in bytes.
+/// Both ends are included. For a text: its length in bytes.
 struct Range {
     double min = -std::numeric_limits<double>::infinity();
     double max = std::numeric_limits<double>::infinity();
@@ -56,7 +56,7 @@ template <class E>
 constexpr Name named(E value, const char *name) {
     return {static_cast<std::int64_t>(value), name};
 }
-/// Specialised beside each enumeration that a message uses: an array of Name.
+/// Specialised for each enumeration that a message uses: an array of Name.
 template <class E>
 inline constexpr std::nullptr_t NAMES = nullptr;
 
@@ -64,7 +64,7 @@ enum class Kind : std::uint8_t { BOOL, INTEGER, UNSIGNED, REAL, NAMED, TEXT, FIX
 
 struct Declaration;
 
-/// The std::vector behind a field, without its type.
+/// Access to the std::vector of a field without its type.
 struct ListAccess {
     std::size_t (*size)(const void *list);
     void (*resize)(void *list, std::size_t size);
@@ -73,14 +73,14 @@ struct ListAccess {
 
 struct Type {
     Kind kind = Kind::BOOL;
-    std::uint8_t bytes = 0;  ///< of a number
-    bool isArray = false;    ///< count elements, stride bytes apart
+    std::uint8_t bytes = 0;  ///< size of a number
+    bool isArray = false;    ///< `count` elements, `stride` bytes apart
     std::uint32_t count = 1;
     std::uint32_t stride = 0;
-    std::uint32_t capacity = 0;          ///< of a fixed text
-    std::span<const Name> names{};       ///< of an enumeration
-    const Declaration *parts = nullptr;  ///< of a struct
-    const ListAccess *list = nullptr;    ///< any number of elements, up to the range's end
+    std::uint32_t capacity = 0;          ///< maximum length of a fixed text
+    std::span<const Name> names{};       ///< names of an enumeration
+    const Declaration *parts = nullptr;  ///< declaration of a struct
+    const ListAccess *list = nullptr;    ///< list of any number of elements, up to the end of the range
 };
 
 enum class Presence : std::uint8_t { REQUIRED, OPTIONAL };
@@ -92,12 +92,12 @@ struct Field {
     const char *unit;
     Range range;
     void *(*at)(void *object);
-    Presence presence = Presence::REQUIRED;  ///< an optional one keeps its default where JSON leaves it out
+    Presence presence = Presence::REQUIRED;  ///< an optional field keeps its default if JSON omits it
 };
 
 struct Declaration {
     const char *name;
-    int number;  ///< 0: a part of others only
+    int number;  ///< 0: only a part of other messages
     const char *doc;
     std::span<const Field> fields;
 };
@@ -109,7 +109,7 @@ struct Declared {
     const char *doc;
     std::array<Field, N> fields;
 };
-/// Specialised beside each struct by declare().
+/// Specialised for each struct by declare().
 template <class T>
 inline constexpr std::nullptr_t DECLARED = nullptr;
 
@@ -117,7 +117,7 @@ template <class T>
 inline constexpr Declaration DECLARATION{DECLARED<T>.name, DECLARED<T>.number, DECLARED<T>.doc,
                                          std::span<const Field>(DECLARED<T>.fields)};
 
-/// Messages that LinuxCNC has keep its numbers; those of Millwright alone begin here.
+/// LinuxCNC's messages keep their numbers; numbers of Millwright's own messages begin here.
 inline constexpr int FIRST_OWN_NUMBER = 3001;
 
 template <class... F>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Commands about spindles, coolant, lubrication, e-stop chain, tools and I/O.
+// Commands for spindles, coolant, lubrication, the e-stop chain, tools and I/O.
 #pragma once
 
 #include "base/limits.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints, axes and spindles as the status reports them.
+// Status of joints, axes and spindles.
 #pragma once
 
 #include "base/limits.hh"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A text of bounded length in place, for what is copied whole through shared memory.
+// A text of bounded length inside the object, for structures that are copied as a whole through shared
+// memory.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +22,7 @@ struct FixedText {
     FixedText() = default;
     FixedText(std::string_view text) { assign(text); }
 
-    /// False when the text is longer: then its beginning is kept, cut between characters.
+    /// False when the text is longer; its beginning is then stored, cut between characters.
     bool assign(std::string_view text) {
         std::size_t length = std::min(text.size(), N);
         while (length < text.size() && length > 0 &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Commands about joints and jogs.
+// Commands for joints and jogs.
 #pragma once
 
 #include "base/limits.hh"
@@ -26,7 +26,7 @@ inline constexpr auto DECLARED<UnhomeJoint> =
             field<&UnhomeJoint::joint>("joint", "-1: all; -2: those of VOLATILE_HOME", unit::NONE,
                                        range(-2, MAX_JOINTS - 1)));
 
-/// A lease that is not 0 is at least so long. [ms]
+/// Minimum of a lease that is not 0. [ms]
 inline constexpr int SHORTEST_JOG_LEASE_MS = 20, LONGEST_JOG_LEASE_MS = 10000;
 struct JogContinuous {
     bool isJoint = true;
@@ -91,7 +91,7 @@ inline constexpr auto DECLARED<JogStop> = declare(
     field<&JogStop::isJoint>("is_joint", "true: a joint, in free mode; false: an axis, in teleop mode"),
     field<&JogStop::index>("index", "number of the joint, or of the axis: 0 X ... 8 W", unit::NONE, JOINTS));
 
-/// Until the next jog.
+/// Effective until the next jog.
 
 struct OverrideLimits {
     int joint = -1;

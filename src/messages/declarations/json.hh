@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Messages as JSON: {"message":"JogStop","is_joint":true,"index":0}. Enumerations by name, infinite numbers
-// as the texts "inf" and "-inf", what is not a number as "nan".
+// as the texts "inf" and "-inf", NaN as "nan".
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 namespace mw::messages {
 
 std::string to_json(const ConstObject &message);
-/// A single value of a message; of an array, one element.
+/// A single value of a message; for an array one element.
 std::string to_json(const Field &field, const void *at);
 
-/// The value of "message", by which a reader finds the declaration.
+/// The value of "message", which selects the declaration.
 Result<std::string> json_name(std::string_view json);
 
 /// Reads one message of this declaration. Unknown fields and missing ones without a default are errors.

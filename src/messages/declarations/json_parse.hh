@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// JSON of clients. Each reader of it parses it here, so that none keeps what a client nests without end.
+// Parses JSON from clients. All readers use this function, because it limits the nesting.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,10 +7,11 @@
 
 namespace mw::messages {
 
-/// Levels of the largest command, and some more.
+/// Maximum nesting: that of the largest command, with a margin.
 inline constexpr int MOST_JSON_LEVELS = 16;
 
-/// Discarded where it is not JSON, or where more than MOST_JSON_LEVELS objects and arrays are in one another.
+/// The result is discarded if the text is not JSON, or more than MOST_JSON_LEVELS objects and arrays are
+/// nested.
 inline nlohmann::ordered_json parse_json(std::string_view text) {
     using Json = nlohmann::ordered_json;
     constexpr bool HAS_EXCEPTIONS = false;

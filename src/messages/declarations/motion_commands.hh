@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Commands about overrides, modes of motion, moves, offsets and outputs.
+// Commands for overrides, motion modes, moves, offsets and outputs.
 #pragma once
 
 #include "base/limits.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The enumerations of the vocabulary. Numbers that clients written for LinuxCNC compare are the same.
+// The enumerations of the messages. Values that LinuxCNC's clients compare are the same.
 #pragma once
 
 #include "messages/declarations/describe.hh"
@@ -23,7 +23,7 @@ inline constexpr auto NAMES<InterpState> =
     std::array{named(InterpState::IDLE, "IDLE"), named(InterpState::READING, "READING"),
                named(InterpState::PAUSED, "PAUSED"), named(InterpState::WAITING, "WAITING")};
 
-/// What task waits for, as clients of LinuxCNC read it.
+/// The condition that task waits for, as clients of LinuxCNC read it.
 enum class ExecState : std::uint8_t {
     ERROR = 1,
     DONE = 2,
@@ -47,7 +47,7 @@ inline constexpr auto NAMES<ExecState> =
                named(ExecState::WAITING_FOR_SYSTEM_CMD, "WAITING_FOR_SYSTEM_CMD"),
                named(ExecState::WAITING_FOR_SPINDLE_ORIENTED, "WAITING_FOR_SPINDLE_ORIENTED")};
 
-/// Where moves lead that a person has to confirm before they are made.
+/// Target of moves that a person must confirm before they start.
 enum class ApproachTo : std::uint8_t { NOTHING, LINE, PLACE_LEFT, PLACE_LOST };
 template <>
 inline constexpr auto NAMES<ApproachTo> =
@@ -59,7 +59,7 @@ template <>
 inline constexpr auto NAMES<MotionMode> = std::array{
     named(MotionMode::FREE, "FREE"), named(MotionMode::COORD, "COORD"), named(MotionMode::TELEOP, "TELEOP")};
 
-/// Of the move that is executed.
+/// Type of the current move.
 enum class MoveKind : std::uint8_t {
     NONE = 0,
     TRAVERSE = 1,
@@ -83,14 +83,14 @@ template <>
 inline constexpr auto NAMES<JointKind> =
     std::array{named(JointKind::LINEAR, "LINEAR"), named(JointKind::ANGULAR, "ANGULAR")};
 
-/// What relates the joints to the axes.
+/// Relation between joints and axes.
 enum class Kinematics : std::uint8_t { IDENTITY = 1, FORWARD_ONLY = 2, INVERSE_ONLY = 3, BOTH = 4 };
 template <>
 inline constexpr auto NAMES<Kinematics> =
     std::array{named(Kinematics::IDENTITY, "IDENTITY"), named(Kinematics::FORWARD_ONLY, "FORWARD_ONLY"),
                named(Kinematics::INVERSE_ONLY, "INVERSE_ONLY"), named(Kinematics::BOTH, "BOTH")};
 
-/// What has to happen before the program continues. The argument is the number of the pin, joint or spindle.
+/// Condition for continuing the program. The argument is the number of the pin, joint or spindle.
 enum class WaitFor : std::uint8_t {
     NOTHING,
     DWELL,
@@ -125,7 +125,7 @@ inline constexpr auto NAMES<WaitFor> = std::array{named(WaitFor::NOTHING, "NOTHI
                                                   named(WaitFor::USER_CODE, "USER_CODE"),
                                                   named(WaitFor::HOMING, "HOMING")};
 
-/// How far a command has come. One that takes time (homing, MDI, a program) is STARTED until it ends.
+/// Progress of a command. A command that takes time (homing, MDI, a program) is STARTED until it ends.
 enum class Progress : std::uint8_t { STARTED, DONE, REFUSED, FAILED };
 template <>
 inline constexpr auto NAMES<Progress> =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Commands about the machine's state, modes, programs and lines, and texts for the operator.
+// Commands for the machine's state, modes, programs and lines, and texts for the operator.
 #pragma once
 
 #include "base/limits.hh"
@@ -7,7 +7,7 @@
 
 namespace mw::messages {
 
-/// Longest path and MDI line. [bytes]
+/// Maximum length of a path and of an MDI line. [bytes]
 inline constexpr std::size_t MAX_TEXT = 1023;
 inline constexpr Range LINE{1, MAX_TEXT};
 
@@ -36,7 +36,7 @@ inline constexpr auto DECLARED<OpenProgram> =
             field<&OpenProgram::path>("path", "of the file", unit::NONE, LINE));
 
 struct RunProgram {
-    int from_line = 0;  ///< of the main program; what comes before is calculated, not made
+    int from_line = 0;  ///< line of the main program; earlier lines are interpreted without motion
 };
 template <>
 inline constexpr auto DECLARED<RunProgram> =
@@ -47,7 +47,7 @@ inline constexpr auto DECLARED<RunProgram> =
                 "-1: only reads it",
                 unit::NONE, range(-1, 1e9))));
 
-/// A person has seen the moves of ApproachStatus and confirms them.
+/// A person has seen the moves in ApproachStatus and confirms them.
 struct ConfirmApproach {
     std::uint64_t number = 0;
 };
@@ -56,7 +56,7 @@ inline constexpr auto DECLARED<ConfirmApproach> =
     declare("ConfirmApproach", 3005, "executes the proposed moves, then resumes the program",
             field<&ConfirmApproach::number>("number", "of the proposal, as ApproachStatus shows it"));
 
-/// Of a paused program: it resumes later at the position that it has left.
+/// For a paused program: it resumes at the position where it was paused.
 struct ReleaseAxes {};
 template <>
 inline constexpr auto DECLARED<ReleaseAxes> =
@@ -141,7 +141,7 @@ template <>
 inline constexpr auto DECLARED<ForwardProgram> =
     declare("ForwardProgram", 521, "goes forward along the path again");
 
-/// The operator's abort: never subject to the right to operate.
+/// The operator's abort: accepted from every client.
 struct AbortAll {};
 template <>
 inline constexpr auto DECLARED<AbortAll> =
@@ -158,7 +158,7 @@ template <>
 inline constexpr auto DECLARED<SetDebug> =
     declare("SetDebug", 22, "sets what is logged, as [EMC]DEBUG", field<&SetDebug::mask>("mask", "bits"));
 
-/// Texts for the operator, from task or from a client to all others.
+/// Texts for the operator, from task, or from a client to all other clients.
 struct OperatorError {
     std::string text;
 };
@@ -181,9 +181,10 @@ inline constexpr auto DECLARED<OperatorDisplay> =
     declare("OperatorDisplay", 13, "a message of the program, as (MSG) and (DEBUG)",
             field<&OperatorDisplay::text>("text", "the message", unit::NONE, LINE));
 
-// --- the right to operate, kept by the mailbox
+// --- the right to operate, managed by the mailbox
 
-/// From now on only this client's commands are taken; e-stop, abort, hold and halui always are.
+/// From now on only commands of this client are accepted, except e-stop, abort, hold and the commands of
+/// halui.
 struct ClaimOperation {
     double lease_s = 5;
 };

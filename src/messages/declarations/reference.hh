@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The reference page docs/reference/messages.md, made from the declarations.
+// The reference page docs/reference/messages.md, generated from the declarations.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The status of a whole machine: parts, each written by its owner; published whole, once a task cycle.
+// The status of a machine. Each part is written by its owner; the whole status is published once in each task
+// cycle.
 #pragma once
 
 #include "base/limits.hh"
@@ -124,7 +125,8 @@ inline constexpr auto DECLARED<OperationStatus> =
             field<&OperationStatus::lease_left_s>("lease_left_s", "until its right runs out", unit::SECOND),
             field<&OperationStatus::handovers>("handovers", "changes of the holder"));
 
-/// Trivially copyable. The tool table is large and changes seldom: it goes by version (ToolTable).
+/// Trivially copyable. The tool table is large and changes seldom, so the status has only its version (see
+/// ToolTable).
 struct MachineStatus {
     std::uint64_t cycle = 0;
     std::int64_t time_ns = 0;
@@ -194,7 +196,7 @@ inline constexpr auto DECLARED<ToolRecord> =
             field<&ToolRecord::orientation>("orientation", "lathe tools, 0 to 9"),
             field<&ToolRecord::comment>("comment", "as in the file"));
 
-/// Entries that a tool table may have.
+/// Maximum number of entries of a tool table.
 inline constexpr double MAX_TOOLS = 2000;
 
 struct ToolTable {

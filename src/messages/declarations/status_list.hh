@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every struct that the status of a machine consists of, and the tool table.
+// All structs of the machine's status, and the tool table.
 #pragma once
 
 #include "messages/declarations/status.hh"

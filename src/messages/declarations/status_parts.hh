@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parts of the machine's status in which it is published: frequent readers copy only parts that have
-// changed.
+// The parts in which the machine's status is published, so that frequent readers copy only changed parts.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +9,8 @@
 
 namespace mw::messages::status_part {
 
-/// TASK: cycle, commands, messages, states and place in the program; PATH: trajectory, probe, overrides,
-/// motion with digital inputs and outputs; DEVICES: tool, I/O, the right to operate; APPROACH: that and
+/// TASK: cycle, commands, messages, states and position in the program; PATH: trajectory, probe, overrides,
+/// motion with digital inputs and outputs; DEVICES: tool, I/O, the right to operate; APPROACH: approach and
 /// recovery.
 inline constexpr int TASK = 0, PROGRAM = 1, CODES = 2, OFFSETS = 3, PATH = 4, ANALOG_IN = 5, ANALOG_OUT = 6,
                      JOINTS = 7, AXES = JOINTS + MAX_JOINTS, SPINDLES = AXES + 1,

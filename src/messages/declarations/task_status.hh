@@ -19,12 +19,12 @@ inline constexpr auto DECLARED<Waiting> =
             field<&Waiting::what>("what", "kind"),
             field<&Waiting::index>("index", "number of the pin, joint or spindle; -1: all or none"));
 
-/// "pin motion.digital-in-03", "the end of a dwell"; empty for nothing.
+/// "pin motion.digital-in-03", "the end of a dwell"; empty if task does not wait.
 std::string waiting_text(const Waiting &waiting);
 
-/// Longest path of a program in the status. [bytes]
+/// Maximum length of the program's path in the status. [bytes]
 inline constexpr std::size_t MAX_STATUS_TEXT = 1023;
-/// Longest block in the status; a longer one is cut at the end. [bytes]
+/// Maximum length of a block in the status; a longer block is cut at the end. [bytes]
 inline constexpr std::size_t MAX_STATUS_BLOCK = 255;
 
 struct TaskStatus {
@@ -119,10 +119,10 @@ inline constexpr auto DECLARED<ApproachMove> =
             field<&ApproachMove::isRapid>("rapid", "a rapid; else at feed"));
 
 inline constexpr std::size_t MAX_APPROACH_MOVES = 4;
-/// Longest explanation in the status. [bytes]
+/// Maximum length of an explanation in the status. [bytes]
 inline constexpr std::size_t MAX_STATUS_REASON = 255;
 
-/// Active codes and offsets at the position where a program is to resume, and the approach to it.
+/// Active codes and offsets at the position where a program will resume, and the approach to it.
 struct ApproachStatus {
     std::uint64_t number = 0;
     ApproachTo to = ApproachTo::NOTHING;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One line of text for logs and people.
+// A message as one line of text, for logs and people.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace mw::messages {
 
 /// "JogStop is_joint=true index=0".
 std::string to_text(const ConstObject &message);
-/// In quotes; characters that would break a line are written as \", \\ and \xNN.
+/// The text in quotes; characters that would break a line are written as \", \\ and \xNN.
 std::string quoted(std::string_view text);
 
 }  // namespace mw::messages

@@ -10,7 +10,7 @@
 namespace mw::messages {
 namespace {
 
-/// Every FixedText begins with its size, its bytes follow.
+/// A FixedText begins with its size, followed by its bytes.
 constexpr std::size_t FIXED_BYTES_AT = sizeof(std::uint32_t);
 constexpr std::size_t LONGEST = 1U << 20U;
 

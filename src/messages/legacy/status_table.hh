@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The values of the status that clients of LinuxCNC read. One row for each: its names in Python
-// (linuxcnc.stat), linuxcncrsh and Tcl, how these write it, its unit, its meaning and its field. The pins of
-// halui read the same rows (value<NAME>).
+// The values of the status that clients of LinuxCNC read. Each row has the names in Python (linuxcnc.stat),
+// linuxcncrsh and Tcl, the formats, the unit, the meaning and the field. The pins of halui use the same rows
+// (value<NAME>).
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,14 @@ namespace mw::legacy {
 
 using Status = messages::MachineStatus;
 
-/// Empty: this client has no name for the value.
+/// Empty: the client has no name for the value.
 struct Names {
     const char *python = "";
-    const char *python_int = "";  ///< the same of a flag that Python reads as 0 or 1
-    const char *rsh = "";         ///< question of GET
+    const char *python_int = "";  ///< name in Python of a flag that is read as 0 or 1
+    const char *rsh = "";         ///< name for GET
     const char *tcl = "";         ///< command emc_*
-    const char *tcl_order = "";  ///< its words when it also sets the value, by the order `rsh` of linuxcncrsh
+    const char *tcl_order = "";   ///< words of the command if it also sets the value, by the order `rsh` of
+                                  ///< linuxcncrsh
 };
 
 template <class Get>
@@ -49,20 +50,20 @@ inline bool isIdle(const Status &s) {
     return s.task.interp_state == messages::InterpState::IDLE;
 }
 
-/// 1 inch, 2 mm; 0 neither. By the modal code.
+/// 1 inch, 2 mm, 0 neither; from the modal code.
 inline int program_units(const Status &s) {
     constexpr std::size_t UNITS = 5;
     constexpr int G20 = 200, G21 = 210, INCH = 1, MM = 2;
     return s.codes.g[UNITS] == G20 ? INCH : s.codes.g[UNITS] == G21 ? MM : 0;
 }
 
-/// The block under execution; empty when idle, except after a program that has ended.
+/// The block being executed; empty when idle, except after a program that has ended.
 inline std::string executed_block(const Status &s) {
     const bool shown = !isIdle(s) || (s.task.mode == messages::Mode::AUTO && s.task.programs_ended > 0);
     return shown ? s.task.block.str() : std::string();
 }
 
-/// A machine position in the coordinates of programs: without work offset, rotation, G92 and tool offset.
+/// A machine position in program coordinates: without work offset, rotation, G92 and tool offset.
 geometry::Pose program_position(const Status &status, const geometry::Pose &machine_position);
 
 inline std::array<int, MAX_DIGITAL_IO> bits(std::uint64_t word) {
@@ -189,10 +190,10 @@ struct Joint {
 };
 std::string limit_word(const messages::JointStatus &joint);
 std::string unit_word(const Joint &joint);
-/// Limits that Python reads of a joint that the machine does not have: -NO_LIMIT and NO_LIMIT.
+/// Limits that Python reads for a joint that the machine does not have: -NO_LIMIT and NO_LIMIT.
 inline constexpr double NO_LIMIT = 1.0;
 
-/// Of each joint. Names of Python: keys of the dicts of stat.joint.
+/// Values of each joint. The names in Python are keys of the dicts of stat.joint.
 inline constexpr auto JOINT_STATUS = std::tuple{
     row({.python = "jointType"}, Form::NONE, "", "1 linear, 2 angular", [](const Joint &j) { return j.now.isPresent ? j.set.kind : messages::JointKind::LINEAR; }),
     row({.rsh = "JOINT_TYPE", .tcl = "emc_joint_type"}, Form::TYPE, "", "LINEAR, ANGULAR", [](const Joint &j) { return std::string(j.isAngular() ? "ANGULAR" : "LINEAR"); }),
@@ -222,7 +223,7 @@ inline constexpr auto JOINT_STATUS = std::tuple{
     row({.python_int = "override_limits"}, Form::NONE, "", "limits are overridden until the next jog", [](const Joint &j) { return j.now.isOverridingLimits; }),
 };
 
-/// Of each spindle. Names of Python: keys of the dicts of stat.spindle.
+/// Values of each spindle. The names in Python are keys of the dicts of stat.spindle.
 inline constexpr auto SPINDLE_STATUS = std::tuple{
     row({.python_int = "brake"}, Form::NONE, "", "the brake is engaged", [](const messages::SpindleStatus &s) { return s.isBrakeOn; }),
     row({.python = "direction"}, Form::NONE, "", "1 clockwise, -1 counterclockwise, 0 stopped", [](const messages::SpindleStatus &s) { return s.direction; }),
@@ -243,14 +244,14 @@ constexpr void for_each_row(const Table &table, Use &&use) {
     std::apply([&](const auto &...rows) { (use(rows), ...); }, table);
 }
 
-/// A name of a row, as a template parameter.
+/// The name of a row as a template parameter.
 template <std::size_t N>
 struct RowName {
     char text[N]{};
     consteval RowName(const char (&name)[N]) { std::copy_n(name, N, text); }
 };
 
-/// The value of the row with this name in Python or in linuxcncrsh. Another name does not compile.
+/// The value of the row with this name in Python or in linuxcncrsh. An unknown name does not compile.
 template <const auto &TABLE, RowName NAME, class From>
 auto value(const From &from) {
     constexpr std::size_t PLACE = [] {
@@ -266,7 +267,7 @@ auto value(const From &from) {
     return std::get<PLACE>(TABLE).get(from);
 }
 
-/// Indices of the rows that have a name in a client.
+/// Indices of the rows that have a name in this client.
 template <const auto &TABLE, const char *Names::*CLIENT>
 constexpr auto named_rows() {
     constexpr auto COUNT_AND_ALL = [] {
@@ -281,7 +282,7 @@ constexpr auto named_rows() {
     return named;
 }
 
-/// `make` of the index of each row that has a name in a client, as an array.
+/// An array with `make(index)` for each row that has a name in this client.
 template <const auto &TABLE, const char *Names::*CLIENT, class Make>
 constexpr auto from_rows(Make make) {
     constexpr auto ROWS = named_rows<TABLE, CLIENT>();

@@ -6,7 +6,7 @@
 namespace mw::legacy {
 namespace {
 
-/// Within a hundredth: files have their units with a few digits.
+/// Tolerance of one percent, because files contain units with only a few digits.
 bool isAbout(double value, double wanted) {
     return std::abs(value - wanted) < 0.01 * wanted;
 }

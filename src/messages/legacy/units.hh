@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Units in which operators' pins, lines and Tcl commands differ from messages.
+// Units of operators' pins, lines and Tcl commands that differ from the units of messages.
 #pragma once
 
 #include <string>
 
 namespace mw::legacy {
 
-/// A jog speed of halui's pins, of linuxcncrsh or of Tcl [units/min] as messages carry it [units/s].
+/// Converts a jog speed of halui's pins, of linuxcncrsh or of Tcl [units/min] to the unit of messages
+/// [units/s].
 constexpr double per_second(double per_minute) {
     constexpr double SECONDS_PER_MINUTE = 60;
     return per_minute / SECONDS_PER_MINUTE;
 }
 
-/// An override of linuxcncrsh or Tcl as messages carry it: 100 is 1.0.
+/// Converts an override of linuxcncrsh or Tcl to the unit of messages: 100 is 1.0.
 constexpr double factor(double percent) {
     return percent / 100;
 }

@@ -19,11 +19,11 @@ namespace {
 
 using messages::Progress;
 
-/// Once in so many cycles one slot is checked for a dead owner, in turn, and the slots of attended clients.
-/// When no slot is free, one slot in each cycle.
+/// Interval in cycles of the checks for dead owners: one slot in turn, and the slots of attended clients.
+/// When no slot is free, one slot is checked in each cycle.
 constexpr std::uint64_t OWNER_CHECK_CYCLES = 4;
 
-/// A byte that is no authority counts as the least.
+/// A byte that is not a valid authority is treated as the least authority.
 Authority authority_of(const Slot &slot) {
     constexpr auto ALL = static_cast<std::uint8_t>(Authority::CONFIGURE);
     return slot.authority.load(std::memory_order_relaxed) == ALL ? Authority::CONFIGURE : Authority::OPERATE;
@@ -68,13 +68,13 @@ std::vector<CommandServer::Delivery> CommandServer::take(std::int64_t now_ns) {
              "the right to operate alone has expired: all clients can operate again");
     }
     std::vector<Delivery> taken;
-    // A client gets its number, then the first free place behind the reserved ones: no more of these are in
-    // use than numbers given out.
+    // A client gets its number, then the first free slot after the reserved ones. So no more of these slots
+    // are in use than numbers were assigned.
     const auto used = std::min<ClientId>(MAX_CLIENTS, segment_.client_ids.load(std::memory_order_acquire) +
                                                           RESERVED_CLIENTS);
     int owned = 0;
     for (int i = 0; i < static_cast<int>(used); ++i) {
-        // Acquire: pairs with the client's taking of the slot.
+        // Acquire: pairs with the client's store of its owner word.
         if (segment_.slots[static_cast<std::size_t>(i)].owner.load(std::memory_order_acquire) != 0) {
             take_slot(i, taken);
             owned += i >= RESERVED_CLIENTS ? 1 : 0;
@@ -85,7 +85,7 @@ std::vector<CommandServer::Delivery> CommandServer::take(std::int64_t now_ns) {
               [](const Delivery &a, const Delivery &b) { return a.serial < b.serial; });
     std::vector<Delivery> allowed;
     for (Delivery &delivery : taken) {
-        // A panel is wired to the machine: it is never subject to another's right.
+        // A panel is wired to the machine, so another client's right to operate never affects it.
         const auto right = delivery.isPanel ? Result<>{} : right_.check(delivery.client, delivery.command);
         if (!right.has_value()) {
             tell(delivery.serial, Progress::REFUSED, right.error().str());
@@ -98,17 +98,18 @@ std::vector<CommandServer::Delivery> CommandServer::take(std::int64_t now_ns) {
 
 void CommandServer::take_slot(int index, std::vector<Delivery> &out) {
     Slot &slot = segment_.slots[static_cast<std::size_t>(index)];
-    // Before the commands: one that leaves has posted all that it wanted to.
+    // Read before the commands: a client that leaves has posted all its commands.
     const bool isLeaving = slot.isLeaving.load(std::memory_order_acquire) != 0;
-    // Stops before the queue: what was posted before one of them is then seen in the queue, and goes first.
+    // Reads the stops before the queue. Commands that were posted before a stop are then in the queue and are
+    // executed first.
     const std::vector<WaitingStop> stops = waiting_stops(index);
     auto stop = stops.begin();
     const auto accept_stops_before = [&](Serial serial) {
         for (; stop != stops.end() && stop->serial < serial; ++stop) {
             accept(index, stop->serial, stop_at(stop->place), out);
             Serial accepted = stop->serial;
-            // Release: a client that no longer sees it waiting finds its outcome. A newer one of its type
-            // stays.
+            // Release: a client that sees the stop as taken finds its outcome. A newer stop of the same type
+            // remains.
             slot.stops[static_cast<std::size_t>(stop->place)].compare_exchange_strong(
                 accepted, 0, std::memory_order_acq_rel);
         }
@@ -138,7 +139,7 @@ std::vector<CommandServer::WaitingStop> CommandServer::waiting_stops(int index) 
     }
     newest_stops_[static_cast<std::size_t>(index)] = newest;
     for (int place = 0; place < STOP_PLACES; ++place) {
-        // Acquire: pairs with the client's writing of it.
+        // Acquire: pairs with the client's store of the stop.
         const Serial serial = slot.stops[static_cast<std::size_t>(place)].load(std::memory_order_acquire);
         if (serial != 0) {
             waiting.push_back({serial, place});
@@ -180,14 +181,16 @@ void CommandServer::check_owner(int index, std::vector<Delivery> &out) {
     if (isOf(slot, Role::ATTENDED)) {
         stop_unattended(index, out);
     }
-    // Commands of other clients continue: a client need not outlive its program. Their outcomes are dropped.
+    // Commands of clients that have left continue, because a client need not outlive its program. Their
+    // outcomes are dropped.
     std::erase_if(going_, [index](const auto &going) { return going.second.slot == index; });
     serials_[static_cast<std::size_t>(index)].fill(0);
     for (auto &outcome : slot.outcomes) {
         outcome.write({});
     }
     for (std::uint32_t n = 0; n < MAX_POSTED && slot.posted.pop(posted_); ++n) {
-        // Posted between our taking and its death: as if it had come too late.
+        // The client posted these commands before its death and after this read; they are treated as too
+        // late.
     }
     for (auto &stop : slot.stops) {
         stop.store(0, std::memory_order_relaxed);
@@ -198,7 +201,7 @@ void CommandServer::check_owner(int index, std::vector<Delivery> &out) {
     slot.taken.store(0, std::memory_order_relaxed);
     slot.isLeaving.store(0, std::memory_order_relaxed);
     slot.authority.store(0, std::memory_order_relaxed);
-    // Release: the next owner finds the place clean.
+    // Release: the next owner finds an empty slot.
     slot.owner.store(0, std::memory_order_release);
 }
 
@@ -227,15 +230,15 @@ void CommandServer::accept(int index, Serial serial, Result<messages::Command> c
     const Authority authority = authority_of(slot);
     const std::uint64_t owner = slot.owner.load(std::memory_order_relaxed);
     if (is_new && place < 0 && command.has_value() && isStop(*command)) {
-        // A stop is never dropped: it is executed although its outcome cannot be reported.
+        // A stop is never dropped: it is executed even if its outcome cannot be reported.
         note(serial, Progress::STARTED);
         slot.taken.store(taken, std::memory_order_release);
         out.push_back({serial, client, std::move(*command), isPanel, authority, owner});
         return;
     }
     if (!is_new || place < 0) {
-        // A number that the mailbox has not given out, or MAX_OUTCOMES commands under way: nothing can be
-        // answered.
+        // Either the number was not assigned by the mailbox, or MAX_OUTCOMES commands are under way: no
+        // outcome can be reported.
         post(messages::MessageKind::OPERATOR_ERROR,
              "client " + std::to_string(client) +
                  (is_new ? " has too many pending commands: one was dropped"
@@ -250,7 +253,7 @@ void CommandServer::accept(int index, Serial serial, Result<messages::Command> c
     serials_[static_cast<std::size_t>(index)][static_cast<std::size_t>(place)] = serial;
     write(going_[serial]);
     note(serial, Progress::STARTED);
-    // Release: a client that sees it as taken finds its outcome.
+    // Release: a client that sees the command as taken finds its outcome.
     slot.taken.store(taken, std::memory_order_release);
     if (!command.has_value()) {
         tell(serial, Progress::REFUSED, command.error().str());
@@ -304,7 +307,7 @@ void CommandServer::tell(Serial serial, Progress progress, const std::string &re
     note(serial, progress);
     const auto found = going_.find(serial);
     if (found == going_.end()) {
-        return;  // its client is gone
+        return;  // its client has ended
     }
     found->second.written.progress = progress;
     assign(found->second.written.reason, reason);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t ABI_VERSION = 3;
 constexpr std::int64_t NS_PER_S = 1000000000;
-constexpr int START_BITS = 42;  // a process number has at most 22
+constexpr int START_BITS = 42;  // a process id has at most 22 bits
 constexpr std::uint64_t START_MASK = (std::uint64_t{1} << START_BITS) - 1;
 
 runtime::SharedLayout layout() {
@@ -31,7 +31,7 @@ std::string name_of(const std::string &instance) {
 }  // namespace
 
 Memory Memory::in_process() {
-    // Zeroed pages are an empty segment, and pages that no process reads cost nothing.
+    // Zeroed pages are an empty segment; pages that no process reads use no memory.
     void *pages =
         ::mmap(nullptr, sizeof(Segment), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (pages == MAP_FAILED) {
@@ -60,7 +60,7 @@ Result<Memory> Memory::create(const std::string &instance) {
     Memory memory;
     memory.lock_ = std::move(*lock);
     memory.shared_ = std::move(*shared);
-    // Zeroed pages are an empty segment: a client may attach at once.
+    // Zeroed pages are an empty segment, so a client may attach at once.
     memory.segment_ = std::launder(static_cast<Segment *>(memory.shared_.data()));
     return memory;
 }
@@ -100,7 +100,7 @@ void Memory::ring(Segment &segment) {
 bool Memory::wait(Segment &segment, std::uint32_t heard, std::int64_t timeout_ns) {
     segment.waiting.fetch_add(1, std::memory_order_seq_cst);
     const timespec time{timeout_ns / NS_PER_S, timeout_ns % NS_PER_S};
-    // The kernel compares again: a ring between this check and the sleep is not missed.
+    // The kernel compares the value again, so a ring between this check and the sleep is not missed.
     if (segment.bell.load(std::memory_order_acquire) == heard) {
         ::syscall(SYS_futex, &segment.bell, FUTEX_WAIT, heard, &time, nullptr, 0);
     }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which clients may take which places of the mailbox.
+// Slots of the mailbox and the clients that may use them.
 #pragma once
 
 namespace mw::mailbox {
 
-/// The first places are for servers of screens alone: through them each screen can stop the machine, however
-/// many clients there are.
+/// The first slots are reserved for servers of screens, so that each screen can stop the machine however many
+/// clients there are.
 inline constexpr int RESERVED_CLIENTS = 2;
 
 enum class Places { ORDINARY, RESERVED };

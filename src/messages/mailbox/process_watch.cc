@@ -27,7 +27,7 @@ ProcessWatch::State ProcessWatch::state_of(std::uint64_t owner) {
     }
     found = std::ranges::find_if(watched_, [](const Watched &one) { return one.owner == 0; });
     if (found == watched_.end()) {
-        return State::RUNNING;  // cannot be: there are no more clients than places
+        return State::RUNNING;  // cannot happen: there are no more clients than slots
     }
     found->state.store(State::RUNNING, std::memory_order_relaxed);
     found->owner.store(owner, std::memory_order_release);
@@ -51,7 +51,7 @@ void ProcessWatch::forget(std::uint64_t owner) {
 void ProcessWatch::run() {
     sigset_t all;
     sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, nullptr);  // signals belong to the thread that runs the machine
+    pthread_sigmask(SIG_SETMASK, &all, nullptr);  // signals are handled by the thread that runs the machine
     std::array<std::uint64_t, MAX_CLIENTS> stopped_before{};
     while (!isEnding_) {
         count_.wait(0);
@@ -64,7 +64,7 @@ void ProcessWatch::run() {
             const runtime::Activity activity = activity_of(owner);
             const bool stopped = activity == runtime::Activity::STOPPED;
             State state = activity == runtime::Activity::ENDED ? State::ENDED : State::RUNNING;
-            // A debugger or tracer stops a process for moments only, many times a second.
+            // A debugger or tracer stops a process many times a second, but only briefly.
             state = stopped && stopped_before[i] == owner ? State::STOPPED : state;
             stopped_before[i] = stopped ? owner : 0;
             if (one.owner.load(std::memory_order_acquire) == owner) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whether the processes of clients run.
+// Detects whether the processes of clients run.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@
 
 namespace mw::mailbox {
 
-/// Reads /proc in a separate thread, which begins with the first process: what it reads may block. Its
-/// caller, one thread, never waits.
+/// Reads /proc in a separate thread, because such reads may block. The thread starts with the first process.
+/// The caller, one thread, never waits.
 class ProcessWatch {
   public:
     enum class State : std::uint8_t {
         RUNNING,
-        STOPPED,  ///< by a signal or a debugger, in two looks one after the other
+        STOPPED,  ///< by a signal or a debugger, in two consecutive checks
         ENDED,
     };
-    /// Between two looks.
+    /// Interval between two checks.
     static constexpr std::int64_t PERIOD_NS = 50000000;
 
     ProcessWatch() = default;
@@ -28,7 +28,7 @@ class ProcessWatch {
     ProcessWatch &operator=(const ProcessWatch &) = delete;
     ~ProcessWatch();
 
-    /// Watches the process from here on; RUNNING until the first look. `owner`: owner_word().
+    /// Watches the process from now on; RUNNING until the first check. `owner`: owner_word().
     State state_of(std::uint64_t owner);
     void forget(std::uint64_t owner);
 
@@ -40,7 +40,7 @@ class ProcessWatch {
     void run();
 
     std::array<Watched, MAX_CLIENTS> watched_;
-    std::atomic<std::uint32_t> count_{0};  ///< processes watched; the thread sleeps at 0
+    std::atomic<std::uint32_t> count_{0};  ///< number of watched processes; the thread sleeps at 0
     std::atomic<bool> isEnding_{false};
     std::thread thread_;
 };

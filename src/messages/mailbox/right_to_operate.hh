@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The right to operate the machine: all clients have it, until one requests it exclusively.
+// The right to operate the machine. All clients have it until one client claims it exclusively.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +10,23 @@
 
 namespace mw::mailbox {
 
-/// Unique while a mailbox lives, never 0.
+/// Unique during the lifetime of a mailbox, never 0.
 using ClientId = std::uint32_t;
 
-/// A lease with an end. Time is passed in. One thread.
+/// A lease with an end. The caller passes the time. One thread.
 class RightToOperate {
   public:
-    /// Takes the right, or renews it for `lease_s` from now. An error while another client has it.
+    /// Claims the right, or renews it for `lease_s` from now. An error while another client has it.
     Result<> claim(ClientId client, double lease_s, std::int64_t now_ns);
-    /// Only the holder gives it away; the lease begins again.
+    /// Transfers the right to another client; only the holder may do this. The lease begins again.
     Result<> hand_over(ClientId from, ClientId to, std::int64_t now_ns);
     Result<> release(ClientId client);
-    /// The client is gone, and its right with it.
+    /// The client has ended, and with it its right.
     void forget(ClientId client);
     /// Ends a lease that was not renewed; true when it has just ended.
     bool step(std::int64_t now_ns);
 
-    /// The error names the client that operates. Stops are always allowed.
+    /// The error names the client that operates. Stops are always permitted.
     Result<> check(ClientId client, const messages::Command &command) const;
     messages::OperationStatus status(std::int64_t now_ns) const;
 

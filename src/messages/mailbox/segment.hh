@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The memory between task and its clients: in one process or shared between several. Holds no pointers and no
-// locks: a process that is killed, at any instruction, leaves it usable for all others.
+// The memory between task and its clients, in one process or shared between several. It contains no pointers
+// and no locks: if a process is killed at any instruction, the memory is still usable for all others.
 #pragma once
 
 #include <array>
@@ -15,18 +15,19 @@
 
 namespace mw::mailbox {
 
-/// One count for the commands of all clients, from 1.
+/// Number of a command, counted over all clients from 1.
 using Serial = std::uint64_t;
 
 inline constexpr int MAX_CLIENTS = 32;
-/// Commands of one client that task has not taken yet.
+/// Maximum number of commands of one client that task has not taken yet.
 inline constexpr std::uint32_t MAX_POSTED = 16;
-/// Commands of one client whose outcome is remembered; those under way always are.
+/// Number of commands of one client whose outcomes are stored; outcomes of commands under way are always
+/// stored.
 inline constexpr int MAX_OUTCOMES = 64;
 inline constexpr int MAX_MESSAGES = 256;
-/// Bytes of one command in the binary form.
+/// Maximum size of one command in the binary form. [bytes]
 inline constexpr std::size_t MAX_COMMAND = 1100;
-/// Bytes of a tool table in the binary form.
+/// Maximum size of a tool table in the binary form. [bytes]
 inline constexpr std::size_t MAX_TOOL_BYTES = 512UL * 1024;
 
 struct Posted {
@@ -38,83 +39,85 @@ struct Posted {
 struct Outcome {
     Serial serial = 0;
     messages::Progress progress = messages::Progress::STARTED;
-    messages::FixedText<491> reason;  ///< why it was rejected or has failed
+    messages::FixedText<491> reason;  ///< reason of a rejection or failure
 };
 
 struct NumberedMessage {
     std::uint64_t number = 0;  ///< from 1
-    std::int64_t at_ns = 0;    ///< CLOCK_MONOTONIC when it appeared
+    std::int64_t at_ns = 0;    ///< time of the message (CLOCK_MONOTONIC)
     messages::MessageKind kind = messages::MessageKind::OPERATOR_ERROR;
     messages::FixedText<1023> text;
 };
 
 struct Bytes {
-    std::uint64_t version = 0;  ///< 0: nothing yet
+    std::uint64_t version = 0;  ///< 0: no data yet
     std::uint64_t size = 0;
     std::array<char, MAX_TOOL_BYTES> bytes{};
 };
 
 /// Role of a client at the mailbox.
 enum class Role : std::uint8_t {
-    OPERATOR,  ///< subject to another's right to operate
-    PANEL,     ///< wired to the machine (halui): never
-    ATTENDED,  ///< as OPERATOR; what it has begun is aborted when it leaves or dies: it watches over its work
+    OPERATOR,  ///< another client's right to operate affects it
+    PANEL,     ///< wired to the machine (halui): the right to operate never affects it
+    ATTENDED,  ///< as OPERATOR, and work that it has started is aborted when it leaves or dies
 };
 
-/// What the commands of a client may reach on this computer besides the machine
-/// (docs/integrator/security.md). The lesser of two is their std::min; an empty slot has the
-/// least.
+/// Resources of this computer that the commands of a client may access (docs/integrator/security.md). The
+/// lesser of two values is their std::min; an empty slot has the least.
 enum class Authority : std::uint8_t {
-    OPERATE,    ///< programs of the program folder, logs in it, no lines of Python
+    OPERATE,    ///< programs in the program folder, logs in it, no lines of Python
     CONFIGURE,  ///< all files of the machine's user, and Python
 };
 
 /// Identity of the machine, written when it is ready for clients.
 struct Identity {
     messages::FixedText<1023> ini;  ///< path of the INI file
-    bool isLasting = false;         ///< stays up when a program has ended, for any client
+    bool isLasting = false;         ///< the machine keeps running after a program has ended, for any client
 };
 
-/// A client's place. A free one has no owner; the owner's word is set in one step, so that task always
-/// knows whether the process that took it is alive.
+/// Slot of a client. A free slot has no owner. The owner's word is set in one step, so that task always knows
+/// whether the process that took the slot is alive.
 struct Slot {
-    std::atomic<std::uint64_t> owner{0};     ///< [client takes it, task frees it] owner_word(), 0: free
-    std::atomic<std::uint32_t> client{0};    ///< its id, written after the owner
+    std::atomic<std::uint64_t> owner{0};     ///< [client takes the slot, task frees it] owner_word(), 0: free
+    std::atomic<std::uint32_t> client{0};    ///< id of the client, written after the owner
     std::atomic<std::uint8_t> role{0};       ///< Role
-    std::atomic<std::uint8_t> isLeaving{0};  ///< the client is done; task frees the slot
+    std::atomic<std::uint8_t> isLeaving{0};  ///< the client has ended; task frees the slot
     std::atomic<std::uint8_t> authority{0};  ///< Authority, written before the first command
-    std::atomic<Serial> taken{0};            ///< [task] the last command taken from it
+    std::atomic<Serial> taken{0};            ///< [task] the last command taken from the slot
     SpscRing<Posted, MAX_POSTED> posted;     ///< client -> task
-    /// Stops for which `posted` has no space: the number of the newest one of each type, 0: none. The client
-    /// writes it, task clears it once the stop's outcome is written.
+    /// Stops for which `posted` has no space: the number of the newest stop of each type, 0: none. The client
+    /// writes the number; task clears it after it has written the stop's outcome.
     std::array<std::atomic<Serial>, STOP_PLACES> stops{};
-    std::atomic<Serial> newest_stop{0};                   ///< [client] written after its place in `stops`
+    std::atomic<Serial> newest_stop{0};                   ///< [client] written after the stop in `stops`
     std::array<Seqlock<Outcome>, MAX_OUTCOMES> outcomes;  ///< task -> client
-    std::atomic<std::uint64_t> told{0};                   ///< [task] counts what it has written there
+    std::atomic<std::uint64_t> told{0};                   ///< [task] number of outcomes written
 };
 
-/// All zero is an empty one.
+/// An all-zero segment is empty.
 struct Segment {
-    std::atomic<Serial> serials{0};       ///< given out
-    std::atomic<ClientId> client_ids{0};  ///< given out
+    std::atomic<Serial> serials{0};       ///< numbers assigned to commands
+    std::atomic<ClientId> client_ids{0};  ///< numbers assigned to clients
     std::array<Slot, MAX_CLIENTS> slots;
-    Seqlock<Identity> identity;  ///< [the process of the machine] once
+    Seqlock<Identity> identity;  ///< [machine's process] written once
 
-    messages::PublishedStatus status;  ///< [task] once a cycle
+    messages::PublishedStatus status;  ///< [task] written once in each cycle
     std::atomic<std::uint64_t> cycles{0};
-    Seqlock<Bytes> tools;  ///< [task] when the table changes
+    Seqlock<Bytes> tools;  ///< [task] written when the table changes
     std::atomic<std::uint64_t> tools_version{0};
 
-    std::array<Seqlock<NumberedMessage>, MAX_MESSAGES> messages;  ///< [task] number n at n modulo their count
+    std::array<Seqlock<NumberedMessage>, MAX_MESSAGES> messages;  ///< [task] message n is at index n modulo
+                                                                  ///< the size
     std::atomic<std::uint64_t> newest_message{0};
-    std::atomic<std::uint64_t> read_message{0};    ///< the newest that any client has read
-    std::atomic<std::uint64_t> logged_message{0};  ///< the newest that is written to [DISPLAY]LOG_FILE
-    /// [task] A random number of this start of the machine, not 0. With its number a message is unique.
+    std::atomic<std::uint64_t> read_message{0};    ///< number of the newest message that any client has read
+    std::atomic<std::uint64_t> logged_message{0};  ///< number of the newest message written to
+                                                   ///< [DISPLAY]LOG_FILE
+    /// [task] A random number of this start of the machine, not 0. Together with it a message number is
+    /// unique.
     std::atomic<std::uint64_t> run{0};
 
-    std::atomic<std::uint32_t> bell{0};  ///< a futex: changes once a cycle
+    std::atomic<std::uint32_t> bell{0};  ///< a futex: changes once in each cycle
     std::atomic<std::uint32_t> waiting{
-        0};  ///< clients that may be asleep at it; one that was killed stays counted
+        0};  ///< number of clients that may sleep at the bell; a killed client remains counted
 };
 
 }  // namespace mw::mailbox

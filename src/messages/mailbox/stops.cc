@@ -13,7 +13,7 @@ namespace {
 
 using namespace messages;
 
-constexpr int INDICES = 16;  ///< of joints and axes, as their fields allow
+constexpr int INDICES = 16;  ///< numbers of joints and axes that their fields permit
 
 std::vector<Command> all_stops() {
     std::vector<Command> all{SetState{State::ESTOP}, SetState{State::OFF}, AbortAll{}, PauseProgram{}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Clients and task's desk on one segment, in one process.
+// Clients and task's side of the mailbox on one segment, in one process.
 #include <gtest/gtest.h>
 
 #include "messages/client/client.hh"
@@ -13,7 +13,7 @@ using messages::Progress;
 
 constexpr std::int64_t S = 1000000000;
 
-/// A task with the answers that the test sets.
+/// A task with the results that the test sets.
 class ClientTest : public testing::Test {
   protected:
     Client made(Role role = Role::OPERATOR) {
@@ -21,7 +21,7 @@ class ClientTest : public testing::Test {
         EXPECT_TRUE(client.has_value());
         return std::move(*client);
     }
-    /// One cycle; each delivery is DONE unless it is kept.
+    /// Runs one cycle; each delivery is DONE unless the test keeps it.
     std::vector<CommandServer::Delivery> cycle() {
         now_ns += S / 1000;
         auto taken = desk.take(now_ns);
@@ -193,7 +193,7 @@ TEST_F(ClientTest, AFloodOfStopsIsTakenAndEachHasItsOutcome) {
                       [](const auto &d) { return std::holds_alternative<messages::AbortAll>(d.command); }),
         1);
     EXPECT_GE(taken.back().serial, aborts.back()) << "the last stop counts";
-    // As of all commands, the last MAX_OUTCOMES are remembered: half of them were aborts.
+    // The last MAX_OUTCOMES outcomes of all commands are stored; half of them were aborts.
     for (std::size_t i = aborts.size() - mailbox::MAX_OUTCOMES / 2; i < aborts.size(); ++i) {
         EXPECT_EQ(a.outcome(aborts[i]).progress, Progress::DONE) << i;
     }
@@ -306,7 +306,7 @@ TEST_F(ClientTest, AClientThatLeavesGivesItsPlaceAndRightBack) {
         many.push_back(made());
     }
     EXPECT_FALSE(Client::join(memory.segment()).has_value());
-    for (int i = 0; i < mailbox::RESERVED_CLIENTS; ++i) {  // which servers of screens still find
+    for (int i = 0; i < mailbox::RESERVED_CLIENTS; ++i) {  // servers of screens still find free slots
         auto one = Client::join(memory.segment(), Role::OPERATOR, Places::RESERVED);
         ASSERT_TRUE(one.has_value());
         ASSERT_TRUE(one->post(messages::AbortAll{}).has_value());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Task and clients in separate processes, which are killed at any instant.
+// Task and clients in separate processes that are killed at any instant.
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -24,7 +24,7 @@ std::string instance(const char *what) {
     return std::string("test-") + what + '-' + std::to_string(::getpid());
 }
 
-/// Takes commands and publishes until a stop is requested.
+/// Takes commands and publishes the status until a stop is requested.
 void serve(mailbox::Memory &memory, const std::atomic<bool> &isOver) {
     mailbox::CommandServer desk(memory.segment());
     auto status = std::make_unique<messages::MachineStatus>();
@@ -99,7 +99,7 @@ class SharedCount {
     std::atomic<int> *count_;
 };
 
-/// Clients that were killed can have all places until task finds that they are dead.
+/// Connects. Clients that were killed may have all slots until task detects their death.
 Result<Client> connect_in_time(const std::string &name) {
     auto client = Client::connect(name);
     for (int i = 0; i < 20000 && !client.has_value(); ++i) {
@@ -125,7 +125,7 @@ Result<Client> connect_in_time(const std::string &name) {
     ::_exit(1);
 }
 
-/// Both halves: no other client is affected, and places and the right to operate are free again.
+/// In both halves no other client is affected, and slots and the right to operate become free again.
 TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     const std::string name = instance("kill");
     auto memory = mailbox::Memory::create(name);
@@ -142,7 +142,7 @@ TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
             command_until_killed(name, connected);
         }
         ASSERT_GT(child, 0);
-        // Every second one is killed while it starts or connects, the others while they have a place.
+        // Every second client is killed while it starts or connects, the others while they have a slot.
         for (int i = 0; round % 2 == 0 && i < 20000 && connected.value() == before; ++i) {
             ::usleep(1000);
         }
@@ -154,7 +154,8 @@ TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     auto survivor = connect_in_time(name);
     ASSERT_TRUE(survivor.has_value()) << survivor.error().str();
     Outcome outcome{Progress::REFUSED, ""};
-    for (int i = 0; i < 200 && outcome.progress != Progress::DONE; ++i) {  // until the last dead one is seen
+    // until task has detected the last dead client
+    for (int i = 0; i < 200 && outcome.progress != Progress::DONE; ++i) {
         const auto serial = survivor->post(messages::RunProgram{});
         ASSERT_TRUE(serial.has_value());
         const auto ended = survivor->wait(*serial, 20);
@@ -169,7 +170,7 @@ TEST(MailboxProcess, ClientsKilledAtAnyInstantHurtNobody) {
     task.join();
 }
 
-/// Within a cycle for each place, and one to see that all are taken.
+/// Takes one cycle for each slot, and one cycle to detect that all are taken.
 TEST(MailboxProcess, TheLastPlaceOfADeadClientIsFreeAtOnceWhenNoOtherIs) {
     const std::string name = instance("full");
     auto memory = mailbox::Memory::create(name);
@@ -197,7 +198,8 @@ TEST(MailboxProcess, TheLastPlaceOfADeadClientIsFreeAtOnceWhenNoOtherIs) {
     EXPECT_TRUE(Client::connect(name).has_value());
 }
 
-/// Both halves: a killed one's program is stopped within some cycles, a living one's never.
+/// In both halves the program of a killed client is stopped within some cycles, the program of a running
+/// client never.
 TEST(MailboxProcess, TheProgramOfAnAttendedClientThatIsKilledIsAborted) {
     const std::string name = instance("attended");
     auto memory = mailbox::Memory::create(name);
@@ -258,7 +260,7 @@ TEST(MailboxProcess, TaskKilledAtAnyInstantIsNoticedAndItsNameIsFree) {
         ::usleep(static_cast<useconds_t>(random() % 4000));
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
-        static_cast<void>(client->read_status());  // ends, at any point of task's cycle
+        static_cast<void>(client->read_status());  // the process is killed at any point of task's cycle
         static_cast<void>(client->next_message());
         const auto serial = client->post(messages::Null{});
         ASSERT_TRUE(serial.has_value());
@@ -266,7 +268,7 @@ TEST(MailboxProcess, TaskKilledAtAnyInstantIsNoticedAndItsNameIsFree) {
         ASSERT_FALSE(outcome.has_value());
         EXPECT_EQ(outcome.error().message, "the machine is no longer running");
     }
-    // The next owner of the name removes what the killed one has left behind.
+    // The next owner of the name removes the files of the killed process.
     EXPECT_TRUE(mailbox::Memory::create(name).has_value());
     EXPECT_FALSE(Client::connect(name).has_value());
 }

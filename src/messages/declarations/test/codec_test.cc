@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Binary, JSON and text forms: round trips, literal bytes, and what is rejected.
+// Binary, JSON and text forms: round trips, literal bytes, and rejected input.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
-/// Fills every field with a value that its declaration allows.
+/// Fills every field with a value within its declared range.
 class Filler {
   public:
     explicit Filler(unsigned seed) : random_(seed) {}
@@ -133,7 +133,7 @@ TEST(Codec, NoChangedCutOrLengthenedBytesAreTakenForWhatTheyAreNot) {
     }
     EXPECT_FALSE(decode_command(good + '\0').has_value());
     std::string longer = good + '\0';
-    ++longer[6];  // the length agrees
+    ++longer[6];  // the length is correct
     EXPECT_NE(decode_command(longer).error().message.find("too many"), std::string::npos);
     for (std::size_t i = 0; i < good.size(); ++i) {
         for (int bit = 0; bit < 8; ++bit) {
@@ -150,7 +150,7 @@ TEST(Codec, NoChangedCutOrLengthenedBytesAreTakenForWhatTheyAreNot) {
 
 TEST(Codec, ALengthThatLiesTakesNoMemory) {
     std::string text = encode(Mdi{"G0"});
-    text[13] = 0x7f;  // the text says that it has two thousand million bytes
+    text[13] = 0x7f;  // the text claims a length of two thousand million bytes
     EXPECT_FALSE(decode_command(text).has_value());
     ToolTable table;
     std::string bytes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The declarations themselves: numbers, names, documentation, lookups, ranges, the reference page.
+// Tests of the declarations: numbers, names, documentation, lookups, ranges, the reference page.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -151,7 +151,7 @@ TEST(FixedText, IsCutBetweenCharactersAndSaysSo) {
     FixedText<4> text;
     EXPECT_TRUE(text.assign("abcd"));
     EXPECT_EQ(text.str(), "abcd");
-    EXPECT_FALSE(text.assign("abc\xc3\xa4"));  // an a with two dots: two bytes
+    EXPECT_FALSE(text.assign("abc\xc3\xa4"));  // the letter has two bytes
     EXPECT_EQ(text.str(), "abc");
     EXPECT_FALSE(text.assign("abcde"));
     EXPECT_EQ(text.str(), "abcd");

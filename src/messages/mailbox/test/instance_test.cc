@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One machine of a name, and what dead ones of other users have left.
+// Only one machine per name, and the files left by dead machines of other users.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -22,7 +22,8 @@ std::string instance_of(const char *what) {
     return std::string("test-") + what + '-' + std::to_string(::getpid());
 }
 
-/// A process that has a machine's memory, as another user where this one may change to it. False: it may not.
+/// A process with a machine's memory, run as another user if this process may change to that user. False: it
+/// may not.
 class Machine {
   public:
     Machine(const std::string &instance, bool of_other) {
