@@ -41,7 +41,7 @@ void LimitUse::remember(const Sample &sample) {
     known_ = std::min(known_ + 1, DERIVATIVES + 1);
 }
 
-/// The absolute difference, less 2^order roundings of the position.
+/// The absolute difference, minus 2^order roundings of the position.
 double LimitUse::value(const LimitedCoordinate &coordinate, std::size_t order) const {
     constexpr double EPSILON = std::numeric_limits<double>::epsilon();
     const double roundings = EPSILON * static_cast<double>(1U << order);

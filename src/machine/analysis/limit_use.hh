@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Velocity, acceleration and jerk of commanded positions against limits, by differences of the samples.
+// Velocity, acceleration and jerk of commanded positions, calculated from differences of the samples and
+// compared with limits.
 #pragma once
 
 #include <array>
@@ -15,18 +16,18 @@ namespace mw::machine {
 enum class Derivative : std::uint8_t { VELOCITY, ACCELERATION, JERK };
 inline constexpr std::size_t DERIVATIVES = 3;
 
-/// What is limited: an axis, a joint, or the norm over X, Y and Z.
+/// The limited quantity: an axis, a joint, or the norm over X, Y and Z.
 struct LimitedCoordinate {
     enum class Type : std::uint8_t { AXIS, JOINT, XYZ_NORM } type = Type::AXIS;
-    int index = 0;           ///< of the axis or joint
-    bool isAngular = false;  ///< degrees instead of machine units
+    int index = 0;           ///< number of the axis or joint
+    bool isAngular = false;  ///< in degrees instead of machine units
     /// [unit/s], [unit/s^2], [unit/s^3]; infinity: none.
     std::array<double, DERIVATIVES> limit{};
 };
 
-/// The largest value of a derivative, and where.
+/// The maximum of a derivative, and its position in the program.
 struct LargestUse {
-    /// Less what the rounding of the positions can add to the differences.
+    /// The maximum, minus the error that the rounding of the positions can add to the differences.
     double value = 0;
     std::int64_t time_ns = 0;
     ProgramLine source;
@@ -37,14 +38,14 @@ struct CoordinateUse {
     std::array<LargestUse, DERIVATIVES> largest;
 
     bool hasLimit(std::size_t derivative) const;
-    /// The largest value over the limit; 0 without a limit.
+    /// The maximum divided by the limit; 0 without a limit.
     double ratio(std::size_t derivative) const;
 };
 
-/// A ratio above this exceeds a limit: the sum of the limit's own rounding.
+/// A ratio above this value exceeds a limit. The margin is the rounding of the limit itself.
 inline constexpr double EXCEEDED = 1 + 1e-6;
 
-/// One thread.
+/// For one thread.
 class LimitUse {
   public:
     LimitUse(std::vector<LimitedCoordinate> coordinates, double period_s);
@@ -55,11 +56,11 @@ class LimitUse {
         std::int64_t time_ns = 0;
         ProgramLine source;
     };
-    /// The next position of the history, without a measurement.
+    /// Stores the next position without a measurement.
     void remember(const Sample &sample);
     /// Measures the differences of the last remember().
     void measure(const Sample &sample);
-    /// Positions are not continuous here: the history begins again.
+    /// Starts a new history, because the positions are not continuous here.
     void restart() { known_ = 0; }
 
     const std::vector<CoordinateUse> &uses() const { return uses_; }
@@ -72,8 +73,9 @@ class LimitUse {
 
     std::vector<CoordinateUse> uses_;
     std::array<double, DERIVATIVES + 1> per_period_{};  ///< 1, 1/T, 1/T^2, 1/T^3
-    std::array<Row, DERIVATIVES + 1> difference_{};     ///< of each order; order 0 is the position
-    std::size_t known_ = 0;                             ///< orders that are known
+    std::array<Row, DERIVATIVES + 1> difference_{};     ///< differences of each order; order 0 is the
+                                                        ///< position
+    std::size_t known_ = 0;                             ///< number of orders that are known
 };
 
 }  // namespace mw::machine

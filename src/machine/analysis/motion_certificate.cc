@@ -13,7 +13,7 @@ using motion::Parameter;
 
 constexpr double NONE = std::numeric_limits<double>::infinity();
 
-/// The parameters of velocity, acceleration and jerk of one kind of coordinate.
+/// The parameters of velocity, acceleration and jerk of one type of coordinate.
 using LimitKeys = std::array<Parameter, DERIVATIVES>;
 constexpr LimitKeys AXIS_KEYS{Parameter::AXIS_MAX_VELOCITY, Parameter::AXIS_MAX_ACCELERATION,
                               Parameter::AXIS_MAX_JERK};
@@ -109,7 +109,7 @@ bool MotionCertificate::isContinuous(const motion::TraceSample &sample) {
     }
     const std::uint64_t missing = sample.cycle - last_cycle_ - 1;
     lost_ += missing;
-    // Another kinematics type has another pose for the same joints; a machine that is off follows its
+    // Another kinematics type has another pose for the same joints. A machine that is off follows its
     // feedback.
     const bool isOtherPose = sample.pose_kind != pose_kind_ || sample.isEnabled == 0;
     pose_kind_ = sample.pose_kind;
@@ -135,7 +135,7 @@ void MotionCertificate::take_held() {
 void MotionCertificate::on_sample(const motion::TraceSample &sample) {
     constexpr int SETTLING = DERIVATIVES;
     const bool isRestart = !isContinuous(sample);
-    // With jerk limits the commanded position arrives after the last move has ended.
+    // With jerk limits the commanded position reaches the end after the last move has ended.
     isProgram_ = sample.path_id != 0 || (isProgram_ && sample.isInMotion != 0);
     settling_ = isProgram_ ? SETTLING : std::max(0, settling_ - 1);
     const bool isFirstAfter = !isProgram_ && settling_ == SETTLING - 1;

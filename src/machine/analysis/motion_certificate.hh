@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The certificate of motion: how far the commanded positions of a program used the limits of the machine, and
-// how far they were from the programmed path. It is calculated from the moves that were sent to motion, the
-// samples of the servo thread and the limits in the INI file, without anything that the planner calculated.
+// The certificate of motion: to which extent the commanded positions of a program used the limits of the
+// machine, and their distance from the programmed path. It is calculated from the moves sent to motion, the
+// samples of the servo thread and the limits in the INI file. No result of the planner is used.
 #pragma once
 
 #include <cstdint>
@@ -23,15 +23,16 @@ struct CertificateSettings {
     bool areTolerancesAdded = false;
 };
 
-/// Axes, joints that a pose moves, and the norm over X, Y and Z, with the limits of the INI file. Limits of
-/// jerk only where motion keeps to them ([TRAJ]PLANNER_TYPE).
+/// Axes, joints that a pose moves, and the norm over X, Y and Z, with the limits of the INI file. Jerk limits
+/// only if motion applies them ([TRAJ]PLANNER_TYPE).
 CertificateSettings certificate_settings(const MachineConfig &machine);
 
 struct Certificate {
     std::vector<CoordinateUse> uses;
     Deviations deviations;
-    std::uint64_t samples = 0;       ///< of program motion
-    std::uint64_t lost_samples = 0;  ///< servo cycles that are not in the samples: the figures are incomplete
+    std::uint64_t samples = 0;       ///< number of samples of program motion
+    std::uint64_t lost_samples = 0;  ///< servo cycles that are missing from the samples; the figures are then
+                                     ///< incomplete
 
     bool isWithinLimits() const;
     bool isWithinTolerance() const;
@@ -39,31 +40,32 @@ struct Certificate {
 
 enum class ProgramEnd : std::uint8_t {
     COMPLETE,  ///< the program ran to its end
-    STOPPED,   ///< what is left of the path was not executed
+    STOPPED,   ///< the rest of the path was not executed
 };
 
-/// Of one program. One thread: samples of the servo thread arrive through the trace ring (motion::Channels).
+/// The certificate of one program. One thread: samples of the servo thread arrive through the trace ring
+/// (motion::Channels).
 class MotionCertificate {
   public:
     explicit MotionCertificate(const CertificateSettings &settings);
 
-    /// In the order of the program, each before its first sample.
+    /// Called in the order of the program, for each move before its first sample.
     void on_move(const task::SentMove &move);
     void on_sample(const motion::TraceSample &sample);
     void finish(ProgramEnd end);
 
     Certificate result() const;
-    /// The move at the last sample is a rapid.
+    /// True if the move at the last sample is a rapid.
     bool isRapid() const { return path_.isRapid(); }
 
   private:
-    /// Positions of a sample whose place on the path is known with the next sample.
+    /// Positions of a sample whose position on the path is known only with the next sample.
     struct HeldUse {
         LimitUse::Sample sample;
         bool isMeasured = false, isRestart = false;
     };
 
-    /// Counts lost cycles; false when the positions do not continue those of the last sample.
+    /// Counts lost cycles; false if the positions do not continue those of the last sample.
     bool isContinuous(const motion::TraceSample &sample);
     void take_held();
 
@@ -75,9 +77,9 @@ class MotionCertificate {
     std::uint64_t last_cycle_ = 0;
     std::uint8_t pose_kind_ = 0;
     bool isFirst_ = true;
-    bool isProgram_ = false;  ///< the last sample is of program motion
+    bool isProgram_ = false;  ///< the last sample belongs to program motion
     std::optional<HeldUse> held_;
-    int settling_ = 0;  ///< samples after program motion whose differences still contain it
+    int settling_ = 0;  ///< number of samples after program motion whose differences still contain it
 };
 
 }  // namespace mw::machine

@@ -15,8 +15,10 @@ using geometry::Pose;
 constexpr double REACH = 8;
 constexpr double REACH_OF_TOLERANCE = 2;
 constexpr std::size_t MOST_CANDIDATES = 512;
-constexpr std::uint32_t COMMIT_STEPS = 16;    ///< candidates are compared for a common origin
-constexpr std::uint32_t DECIDE_STEPS = 2000;  ///< after so many without one the best decides
+constexpr std::uint32_t COMMIT_STEPS = 16;    ///< interval in samples for comparing the origins of the
+                                              ///< candidates
+constexpr std::uint32_t DECIDE_STEPS = 2000;  ///< number of samples without a common origin after which the
+                                              ///< best candidate decides
 
 }  // namespace
 
@@ -66,7 +68,7 @@ void PathDeviation::on_sample(const Pose &p, std::uint64_t id, std::int64_t time
     pending_ = Sample{p, time_ns};
 }
 
-/// Assigns the sample that waits for the next one.
+/// Assigns the pending sample.
 void PathDeviation::flush() {
     if (pending_.has_value()) {
         advance(*pending_, pending_->p);
@@ -114,7 +116,7 @@ const PathDeviation::Candidate &PathDeviation::best() const {
     return *std::ranges::min_element(candidates_, isBetter);
 }
 
-/// Each candidate may stay on its piece, or pass corners on the step from the last sample.
+/// Each candidate may remain on its piece, or pass corners in the step from the last sample.
 void PathDeviation::assign(const Sample &sample, const Step &step) {
     const std::vector<Candidate> &before = candidates_;
     double least = std::numeric_limits<double>::infinity();
@@ -191,7 +193,7 @@ std::optional<PathDeviation::Passing> PathDeviation::pass(const Candidate *befor
     return onward;
 }
 
-/// The corner at the end of the candidate's piece.
+/// Adds a candidate that passes the corner at the end of the candidate's piece.
 void PathDeviation::add_corner(Candidate &candidate, const Nearest &nearest, std::int64_t time_ns) const {
     const PathPiece &before = pieces_[candidate.piece];
     const bool isJoined =
@@ -235,7 +237,7 @@ void PathDeviation::prune() {
     pieces_.drop_before(candidates_.front().piece);
 }
 
-/// What all candidates have in common is decided.
+/// Decides the part of the assignment that all candidates have in common.
 void PathDeviation::commit_common() {
     if (++steps_ % COMMIT_STEPS != 0) {
         return;

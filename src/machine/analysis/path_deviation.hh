@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The deviation of commanded positions from the programmed path, in order: both are followed from start to
-// end and never back (the Frechet distance between the samples and the path). It knows only the programmed
-// moves and the samples, nothing that the planner calculated.
+// The deviation of commanded positions from the programmed path, in order: samples and path are followed from
+// start to end and never back (Frechet distance). It uses only the programmed moves and the samples, no
+// results of the planner.
 #pragma once
 
 #include <algorithm>
@@ -15,47 +15,47 @@
 
 namespace mw::machine {
 
-/// A distance of the commanded positions from the path, and its place.
+/// A distance of the commanded positions from the path, and its position.
 struct Deviation {
     double linear = 0;     ///< over XYZUVW [machine units]
     double angular = 0;    ///< over ABC [degrees]
-    double tolerance = 0;  ///< there; 0: none
-    bool isExact = false;  ///< in G61 or G61.1
+    double tolerance = 0;  ///< tolerance at this position; 0: none
+    bool isExact = false;  ///< the mode is G61 or G61.1
     std::int64_t time_ns = 0;
     ProgramLine source;
-    geometry::Pose position;  ///< commanded; at a corner the corner itself
+    geometry::Pose position;  ///< commanded position; at a corner the corner itself
 
     double distance() const { return std::max(linear, angular); }
-    /// 0 without a tolerance.
+    /// Deviation divided by the tolerance; 0 without a tolerance.
     double ratio() const { return tolerance > 0 ? distance() / tolerance : 0; }
 };
 
 struct Deviations {
-    Deviation largest;   ///< by distance
-    Deviation tightest;  ///< by ratio to the tolerance, where G64 P sets one
-    Deviation exact;     ///< by distance, in G61 and G61.1
+    Deviation largest;   ///< maximum distance
+    Deviation tightest;  ///< maximum ratio to the tolerance, for moves with G64 P
+    Deviation exact;     ///< maximum distance in G61 and G61.1
 
     void take(const Deviation &one);
     void take(const Deviations &others);
 };
 
-/// One thread; memory is bounded by the moves ahead of the commanded position. Where the path is near to
-/// itself, several ways to assign the samples to it are followed at the same time, and the one with the
-/// smallest deviation counts.
+/// One thread; memory is bounded by the moves ahead of the commanded position. If parts of the path are near
+/// each other, several assignments of the samples are followed at the same time, and the assignment with the
+/// smallest deviation is used.
 class PathDeviation {
   public:
     /// Moves arrive before the samples that execute them.
     void on_move(const ProgrammedMove &move) { pieces_.add(move); }
-    /// A commanded position during program motion. `id`: of the move being executed, 0: none.
+    /// A commanded position during program motion. `id` is that of the move being executed; 0: none.
     void on_sample(const geometry::Pose &p, std::uint64_t id, std::int64_t time_ns);
-    /// Assigns the last sample, which otherwise waits for the next one.
+    /// Assigns the last sample without the next one.
     void flush();
-    /// The path has been executed to its end: what is left of it counts as a deviation.
+    /// The path has been executed to its end; a remaining part of it counts as a deviation.
     void complete();
 
-    /// All deviations up to the last sample that was assigned.
+    /// All deviations up to the last assigned sample.
     Deviations deviations() const;
-    /// The move at the last sample that was assigned.
+    /// The move at the last assigned sample.
     const ProgramLine &source() const { return source_; }
     bool isRapid() const { return isRapid_; }
 
@@ -64,31 +64,31 @@ class PathDeviation {
         geometry::Pose p;
         std::int64_t time_ns = 0;
     };
-    /// From a sample to the next.
+    /// The step from a sample to the next.
     struct Step {
-        PieceShape chord;  ///< between both samples
-        /// What may be between the motion and its chord: 1/8 of the second differences.
+        PieceShape chord;  ///< line between both samples
+        /// Maximum distance between the motion and its chord: 1/8 of the second differences.
         Slack sag;
         std::int64_t time_ns = 0;
     };
-    /// One way to assign the samples to the path.
+    /// One possible assignment of the samples to the path.
     struct Candidate {
         std::uint64_t piece = 0;  ///< number of the piece
-        double fraction = 0;      ///< of the piece
-        double now = 0;           ///< distance of the last sample
-        double cost = 0;          ///< largest distance since `older` began
+        double fraction = 0;      ///< fraction of the piece
+        double now = 0;           ///< deviation of the last sample
+        double cost = 0;          ///< maximum deviation since `older` began
         double recent_cost = 0;
-        std::size_t origin = 0;    ///< candidate from which it comes since `recent` began
-        Deviations older, recent;  ///< before and since all candidates were marked
+        std::size_t origin = 0;    ///< candidate from which this candidate comes since `recent` began
+        Deviations older, recent;  ///< deviations before and since all candidates were marked
     };
-    /// A candidate that passes corners within one step from sample to sample.
+    /// A candidate that passes corners within one step.
     struct Passing {
         Candidate candidate;
         double along = 0;  ///< fraction of the step
     };
 
     void start_sections(std::uint64_t id);
-    /// `next`: the position after the sample.
+    /// Assigns a sample; `next` is the position after it.
     void advance(const Sample &sample, const geometry::Pose &next);
     void assign(const Sample &sample, const Step &step);
     Step step_to(const Sample &sample, const geometry::Pose &next) const;
@@ -109,9 +109,9 @@ class PathDeviation {
 
     PathPieces pieces_;
     std::vector<Candidate> candidates_, next_;  ///< by piece number
-    std::uint32_t steps_ = 0;                   ///< since the last common commit
+    std::uint32_t steps_ = 0;                   ///< number of steps since the last common commit
     Deviations committed_;
-    /// The last sample is assigned to the path when the next one is known.
+    /// The last sample, which is assigned when the next one is known.
     std::optional<Sample> pending_;
     Sample last_;
     geometry::Pose before_last_;

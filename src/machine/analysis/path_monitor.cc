@@ -25,7 +25,7 @@ void PathMonitor::on_move(const Pose &start, const motion::PathBody &body) {
 
 void PathMonitor::on_sample(const motion::TraceSample &sample, bool isRapid) {
     if (sample.pose_kind != pose_kind_) {
-        // The kinematics has been switched: the machine is stopped and has other coordinates.
+        // The kinematics has been switched, so the machine is stopped and has other coordinates.
         pose_kind_ = sample.pose_kind;
         history_ = {sample.carte_pos_cmd, sample.carte_pos_cmd};
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Watches a run: lengths of the programmed moves, peaks of the commanded motion, points for a picture.
+// Monitors a run: lengths of the programmed moves, maxima of the commanded motion, points for a picture.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace mw::machine {
 
 struct RunFigures {
     double cutting_length = 0, rapid_length = 0;                        ///< [machine units]
-    double cutting_angle_deg = 0, rapid_angle_deg = 0;                  ///< for moves of A, B and C alone
+    double cutting_angle_deg = 0, rapid_angle_deg = 0;                  ///< for moves of only A, B and C
     std::array<double, MAX_AXES> peak_velocity{}, peak_acceleration{};  ///< [units/s], [units/s2]
 };
 
@@ -27,7 +27,7 @@ class PathMonitor {
 
     void start(const geometry::Pose &position) { history_ = {position, position}; }
     void on_move(const geometry::Pose &start, const motion::PathBody &body);
-    /// `isRapid`: the move at the sample is.
+    /// `isRapid`: the move at the sample is a rapid.
     void on_sample(const motion::TraceSample &sample, bool isRapid);
 
     const RunFigures &figures() const { return figures_; }

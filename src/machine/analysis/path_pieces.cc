@@ -11,7 +11,7 @@ namespace {
 
 using geometry::Pose;
 
-constexpr double MOST_PART_RAD = std::numbers::pi / 4;  ///< of an arc in one piece
+constexpr double MOST_PART_RAD = std::numbers::pi / 4;  ///< maximum angle of an arc in one piece
 
 double pose_distance(const Pose &a, const Pose &b) {
     const Pose d = a - b;

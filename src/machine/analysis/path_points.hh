@@ -11,7 +11,7 @@ namespace mw::machine {
 
 struct PathPoint {
     float x, y, z;  ///< [machine units], machine coordinates
-    bool isRapid;   ///< of the move that ends here
+    bool isRapid;   ///< the move that ends here is a rapid
 };
 
 /// Keeps every n-th point; doubles n when there are too many.

@@ -35,7 +35,7 @@ class Checker {
 
     CheckResult result;
 
-    /// `preview` gives the positions of the events.
+    /// `preview` converts the positions of the events.
     void take(std::span<const gcode::PreviewEvent> events, const gcode::Preview &preview) {
         preview_ = &preview;
         timed_ = timed_ && (!options_.wantsTime || options_.wantsTime());
@@ -129,7 +129,7 @@ class Checker {
                key_of_limit(axis, is_low));
     }
 
-    /// Of an axis and the joints that move it, the one with the tightest limit.
+    /// INI key of the tightest limit, of an axis or of the joints that move it.
     std::string key_of_limit(int axis, bool is_low) const {
         const double limit = is_low ? limits_.low[axis] : limits_.high[axis];
         std::string section = std::string("AXIS_") + geometry::AXIS_LETTERS[axis];
@@ -147,8 +147,7 @@ class Checker {
             .get(is_low ? motion::Parameter::AXIS_MIN_LIMIT : motion::Parameter::AXIS_MAX_LIMIT, axis);
     }
 
-    /// The quadrant points of the circle about each principal axis are extreme; sixty-four chords approximate
-    /// them.
+    /// Sixty-four chords per circle approximate the extreme positions along each axis.
     void check_arc(const ProgrammedPiece &piece) {
         constexpr int STEPS = 64;
         const double radius = std::sqrt(std::max(0.0, radius_squared(piece)));
@@ -198,7 +197,7 @@ class Checker {
     const MachineConfig &machine_;
     diagnostics::Sink &sink_;
     const CheckOptions &options_;
-    IsCertain isCertain_;  ///< empty: all are certain
+    IsCertain isCertain_;  ///< empty: all findings are certain
     motion::FoldedLimits limits_;
     TimeEstimate estimate_;
     bool timed_ = true;
@@ -261,12 +260,13 @@ CheckResult check_from(const geometry::Pose &start, const MachineConfig &machine
             return std::make_unique<UnscriptedHost>([&] { tell_unknown("Python"); });
         };
     }
-    // Definitions by scripts are unknown, so an error of the interpreter may not be one.
+    // Definitions by scripts are unknown, so an error of the interpreter may have a cause that does not exist
+    // on the machine.
     diagnostics::Sink errors([&](const diagnostics::Diagnostic &one) {
         if (check.unknown && has_scripts) {
             tell_unknown("Python");
         } else if (source != nullptr) {
-            source->flush();  // findings are in the order of the program
+            source->flush();  // flushes first, so that findings are in the order of the program
         }
         sink.report(one);
     });
@@ -290,9 +290,9 @@ std::string words_of(const diagnostics::Diagnostic &one) {
     return fmt::format("{}:{}: {}", one.what.place.file, one.what.place.line, one.what.message);
 }
 
-/// If joints are not axes, the pose before the start is unknown. A move that exceeds a limit from two
-/// unrelated poses exceeds it from all; the second pose is only checked after a finding. The arguments must
-/// outlive the result.
+/// Without trivial kinematics the pose before the start is unknown. A move that exceeds a limit from two
+/// unrelated poses exceeds it from all poses. The second pose is only checked after a finding. The arguments
+/// must outlive the result.
 IsCertain beyond_from_elsewhere(const MachineConfig &machine, const std::string &program,
                                 const ProgramSources &sources, const CheckOptions &check) {
     return [&machine, &program, sources, &check,

@@ -23,19 +23,19 @@ struct CheckResult {
     std::array<double, MAX_AXES> lowest{}, highest{};  ///< extreme positions, machine coordinates
     bool has_moves = false;
     bool cancelled = false;           ///< `progress` has cancelled the check
-    std::optional<TimeFigures> time;  ///< for a whole program without errors
+    std::optional<TimeFigures> time;  ///< only for a whole program without errors
 };
 
 struct CheckOptions {
     std::function<bool(const gcode::PreviewProgress &)> progress;  ///< false ends the check; may be empty
-    /// Statements that a loop may execute, 0: no limit; default as in gcode::PreviewOptions.
+    /// Number of statements that a loop may execute, 0: no limit; default as in gcode::PreviewOptions.
     std::optional<std::int64_t> statements;
-    /// Runs no Python or user programs. Called where the program may depend on values known only to the
-    /// running machine (scripts, HAL values, inputs, probes); later errors may not be errors. Empty: scripts
-    /// run, and HAL values are errors.
+    /// If set, Python and user programs are not run. It is called when the program may depend on values known
+    /// only to the running machine (scripts, HAL values, inputs, probes); later errors are then uncertain.
+    /// Empty: scripts run, and HAL values are errors.
     std::function<void(const SourcePlace &, std::string_view what)> unknown;
-    std::function<bool()>
-        wantsTime;  ///< once false, the time is no longer calculated; empty: calculated to the end
+    std::function<bool()> wantsTime;  ///< when it returns false, the time is not calculated further; empty:
+                                      ///< calculated to the end
     bool block_delete_on = true;
     PathPoints *points = nullptr;  ///< receives the path of the controlled point
 };
@@ -52,7 +52,7 @@ inline constexpr int MAX_CHECK_ERRORS = 20;
 /// The machine at the start of a program, homed and without a tool; `machine` must outlive it.
 gcode::PreviewMachine preview_stand(const MachineConfig &machine);
 
-/// Position of the homed machine; where joints are not axes, a position within the limits.
+/// Position of the homed machine; without trivial kinematics, a position within the limits.
 geometry::Pose home_position(const MachineConfig &machine);
 
 }  // namespace mw::machine

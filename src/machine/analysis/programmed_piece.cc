@@ -11,9 +11,10 @@ namespace {
 
 using geometry::Pose;
 
-constexpr int REFINEMENTS = 4;      ///< of the nearest point on a helix: each squares the error
-constexpr int HALVINGS = 40;        ///< of the interval between the nearest points in lengths and in angles
-constexpr double CONVERGED = 1e-9;  ///< fraction of a piece: the error is of second order
+constexpr int REFINEMENTS = 4;      ///< iterations for the nearest point on a helix; each squares the error
+constexpr int HALVINGS = 40;        ///< bisections of the interval between the points that are nearest in
+                                    ///< lengths and in angles
+constexpr double CONVERGED = 1e-9;  ///< fraction of a piece; the error is of second order
 constexpr double FLAT = 1e-12;      ///< relative growth and rise below which an arc is a circle
 
 double linear_dot(const Pose &a, const Pose &b) {
@@ -59,8 +60,8 @@ PieceShape::PieceShape(const ProgrammedPiece &piece) : piece_(piece), along_(pie
         const Vec3 end_radius = in_plane(arc_axes(piece.end - piece.centre), normal_);
         radius_ = in_plane(arc_axes(piece.start - piece.centre), normal_);
         side_ = cross(normal_, radius_);
-        // The radius may change slightly between start and end (rounded programs): it changes linearly, as
-        // does what then is left to the end.
+        // The radius may change slightly between start and end (rounded programs). It changes linearly, and
+        // so does the distance that then remains to the end.
         const double r0 = std::sqrt(dot(radius_, radius_)), r1 = std::sqrt(dot(end_radius, end_radius));
         growth_ = r0 > 0 ? r1 / r0 - 1.0 : 0.0;
         const double scale = 1.0 + growth_;
@@ -144,7 +145,8 @@ Nearest PieceShape::nearest(const Pose &p, double from, const Slack &slack) cons
     if (in_angles.angular >= in_angles.linear) {
         return in_angles;
     }
-    // Between the two, the length grows and the angle falls: the larger is least where they are equal.
+    // Between the two points the distance in lengths increases and the distance in angles decreases. The
+    // maximum of both is smallest where they are equal.
     Nearest best = in_angles;
     for (int i = 0; i < HALVINGS && low != high; ++i) {
         best = at(p, 0.5 * (low + high), slack);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A programmed move as a curve: points on it, and the nearest one to a position.
+// A programmed move as a curve: points on it, and the point nearest to a position.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@ namespace mw::machine {
 /// A programmed move with its start position.
 struct ProgrammedPiece {
     geometry::Pose start, end;
-    geometry::Pose centre, normal;  ///< arcs only
+    geometry::Pose centre, normal;  ///< only for arcs
     double angle_rad = 0;           ///< 0: a line
     bool isRapid = false;
     bool isInUvw = false;  ///< the arc is in U, V and W
 };
 
-/// The move of a path command that begins at `start`; nothing for commands that are no moves. Rigid tapping
+/// The move of a path command that begins at `start`; nothing for commands that are not moves. Rigid tapping
 /// returns to its start.
 std::optional<ProgrammedPiece> programmed_piece(const geometry::Pose &start, const motion::PathBody &body);
 
@@ -32,7 +32,7 @@ struct Nearest {
     double distance() const { return std::max(linear, angular); }
 };
 
-/// What is not known of distances.
+/// Uncertainty of distances.
 struct Slack {
     double linear = 0, angular = 0;
 };
@@ -40,8 +40,8 @@ struct Slack {
 /// Length over XYZ, else UVW, else ABC: the feed length.
 double feed_length(const ProgrammedPiece &piece);
 
-/// Precomputed values of a piece, for calculating many points. An arc is at most half a revolution long;
-/// longer ones are divided (part_of()).
+/// Precomputed values of a piece, for calculating many points. An arc has at most half a revolution; longer
+/// arcs are divided (part_of()).
 class PieceShape {
   public:
     explicit PieceShape(const ProgrammedPiece &piece);
@@ -49,8 +49,8 @@ class PieceShape {
     const ProgrammedPiece &piece() const { return piece_; }
     /// The pose at a fraction of the piece.
     geometry::Pose point_at(double fraction) const;
-    /// The point with the smallest distance() to `p` among the fractions from `from` to 1; distances are less
-    /// `slack`, and never negative.
+    /// The point with the smallest distance() to `p` among the fractions from `from` to 1. `slack` is
+    /// subtracted from distances, which are never negative.
     Nearest nearest(const geometry::Pose &p, double from = 0, const Slack &slack = {}) const;
     /// Part `index` of `count` parts with equal length.
     ProgrammedPiece part_of(int index, int count) const;
@@ -67,19 +67,19 @@ class PieceShape {
     void add_to_arc_axes(geometry::Pose &p, double along_radius, double along_side) const;
     geometry::Pose derivative_at(double fraction) const;
     Nearest at(const geometry::Pose &p, double fraction, const Slack &slack) const;
-    /// The fraction nearest in the lengths alone, and in the angles alone; may be outside of the piece.
+    /// The fraction that is nearest in lengths alone, or in angles alone; may be outside of the piece.
     double linear_fraction(const geometry::Pose &p) const;
     double angular_fraction(const geometry::Pose &p) const;
     double arc_fraction(const geometry::Pose &p) const;
 
     ProgrammedPiece piece_;
-    geometry::Pose along_;       ///< end - start, without the share of the circle
-    double linear_length2_ = 0;  ///< of along_
+    geometry::Pose along_;       ///< end - start, without the part on the circle
+    double linear_length2_ = 0;  ///< square of the length of along_
     double angular_length2_ = 0;
-    // Of an arc: the radius at the start, the same rotated by 90 degrees, the growth of the radius.
+    // Of an arc: the radius at the start, the same vector rotated by 90 degrees, the increase of the radius.
     Vec3 normal_, radius_, side_;
     double growth_ = 0;
-    bool isCircle_ = false;  ///< an arc that is neither a helix nor a spiral and moves no other length
+    bool isCircle_ = false;  ///< an arc that is not a helix or spiral and moves no other length
 };
 
 }  // namespace mw::machine

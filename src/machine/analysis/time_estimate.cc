@@ -11,8 +11,8 @@ namespace mw::machine {
 
 namespace {
 
-/// Number of positions with lost time that are kept to find the slowest; above it those with the least loss
-/// are dropped.
+/// Number of positions with lost time that are stored to find the slowest; above it the positions with the
+/// least loss are dropped.
 constexpr std::size_t MOST_PLACES = 100000;
 
 /// Types of moves in their tags.
@@ -94,7 +94,7 @@ trajectory::MoveRequest TimeEstimate::request_of(const geometry::MoveSettings &s
 
 namespace {
 
-/// Moves that follow the spindle are calculated with its programmed speed.
+/// Settings with the feed of moves that follow the spindle, calculated from its programmed speed.
 geometry::MoveSettings timed(const gcode::PreviewEvent &event) {
     geometry::MoveSettings out = event.settings;
     if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cycle time of a program before it runs: per tool and in total, and where time is lost.
+// Cycle time of a program, calculated before it runs: per tool and in total, with the positions where time is
+// lost.
 #pragma once
 
 #include <functional>
@@ -18,7 +19,7 @@ namespace mw::machine {
 struct SlowPlace {
     std::string file;
     int line = 0;
-    double lost_s = 0;  ///< compared with the programmed feed
+    double lost_s = 0;  ///< relative to the programmed feed
     std::string limit;  ///< "acceleration of X", "tolerance"...
 };
 
@@ -36,7 +37,7 @@ struct TimedMove {
     std::uint64_t id = 0;  ///< id of its last event, see TimeEstimate::take
     int line = 0;          ///< line of that event
     double seconds = 0;
-    double top_velocity = 0;  ///< along the feed length; 0 for a dwell
+    double top_velocity = 0;  ///< maximum velocity along the feed length; 0 for a dwell
 };
 
 /// Overrides set by an operator. [1: as programmed]
@@ -48,26 +49,26 @@ struct Overrides {
 /// Receives the moves in order; one thread.
 class TimeEstimate {
   public:
-    /// `watch` is called for each move in order, when it is complete; may be empty.
+    /// `watch` is called for each complete move, in order; may be empty.
     using Watch = std::function<void(const TimedMove &)>;
     explicit TimeEstimate(const MachineConfig &machine, const Overrides &overrides = {}, Watch watch = {});
 
-    /// See trajectory::Estimator::end_when. The estimate is incomplete then.
+    /// See trajectory::Estimator::end_when. The estimate is then incomplete.
     void end_when(std::function<bool()> isToEnd) { estimator_->end_when(std::move(isToEnd)); }
     void start(const geometry::Pose &position);
-    /// `section` as Preview::section names it.
+    /// `section` is the name from Preview::section.
     void set_place(const std::string &file, int line, const std::string &section);
     /// An event of a preview; `id` is returned in TimedMove.
     void take(const gcode::PreviewEvent &event, std::uint64_t id = 0);
     void line(const geometry::Pose &end, const geometry::MoveSettings &settings);
     void arc(const gcode::ArcMove &move);
     void dwell(double seconds);
-    /// Motion stops here: tool changes, stops, probes.
+    /// Stops motion at this point: tool changes, stops, probes.
     void stop();
     void set_tool(int tool);
-    /// G64 R: with or without jerk limits from now on.
+    /// G64 R: selects planning with or without jerk limits from now on.
     void set_smooth(bool smooth);
-    /// Limits the number of slow positions.
+    /// Returns the figures, with a limited number of slow positions.
     const TimeFigures &finish(std::size_t slow_places = SLOW_PLACES);
 
   private:
@@ -78,7 +79,7 @@ class TimeEstimate {
     std::uint64_t id_ = 0;
     motion::Settings settings_;
     trajectory::Limits limits_;
-    double corner_scale_;  ///< for moves that set none
+    double corner_scale_;  ///< for moves that do not set it
     TimeFigures figures_;
     int tool_ = 0;
     std::vector<std::string> files_;

@@ -10,7 +10,7 @@
 namespace mw::machine {
 namespace {
 
-/// Outside of long calls task works by itself; it soon ends its cycle or begins a call.
+/// Outside of long calls task does not wait, so it soon ends its cycle or begins a call.
 constexpr std::chrono::milliseconds LOOK_AGAIN{1};
 
 }  // namespace
@@ -31,7 +31,7 @@ CycleThread::~CycleThread() {
 void CycleThread::give_back() {
     if (taken_) {
         taken_ = false;
-        raise_priority(thread_id_);  // the call returns to task
+        raise_priority(thread_id_);  // the call is returning to task
         call_.give_back();
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The thread that runs the cycles of task, so that the main thread never waits for a file
-// or a script: docs/developer/long_calls.md.
+// The thread that runs the cycles of task, so that the main thread never waits for a file or a script
+// (docs/developer/long_calls.md).
 #pragma once
 
 #include <atomic>
@@ -23,24 +23,24 @@ class CycleThread {
         std::function<void(std::int64_t now_ns)> whole, apart;
     };
     CycleThread(task::LongCall &call, Works works);
-    /// Only after the end of the cycle.
+    /// Call it only after the end of the cycle.
     ~CycleThread();
     CycleThread(const CycleThread &) = delete;
     CycleThread &operator=(const CycleThread &) = delete;
 
-    /// Permits a call that has ended to return to task.
+    /// Permits a completed call to return to task.
     void give_back();
-    /// Begins a cycle unless the last one is running, and waits for its end; waits PATIENCE_NS for a long
-    /// call, then only briefly in each cycle, and runs `apart`. A thread in a long call has the priority of
-    /// other programs, because a script may calculate for long.
+    /// Begins a cycle unless the last one is running, and waits for its end. It waits PATIENCE_NS for a long
+    /// call, in later cycles only briefly, and runs `apart`. A thread in a long call has the priority of
+    /// other programs, because a script may calculate for a long time.
     void run(std::int64_t now_ns);
-    /// Waits for the end of the running cycle; false when it takes longer. The call does not return to task
-    /// then.
+    /// Waits for the end of the running cycle; false when it takes longer. The call then does not return to
+    /// task.
     bool end_call(std::int64_t most_ns);
-    /// The last cycle has not ended.
+    /// True if the last cycle has not ended.
     bool isApart() const { return taken_; }
 
-    /// Thread id of the kernel; 0 before its first cycle.
+    /// Thread id from the kernel; 0 before the first cycle.
     int thread_id() const { return thread_id_; }
 
     static constexpr std::int64_t PATIENCE_NS = 20000000;
@@ -61,7 +61,7 @@ class CycleThread {
     bool ending_ = false;
     std::int64_t now_ns_ = 0;
 
-    std::thread thread_;  ///< last member, because it uses the others
+    std::thread thread_;  ///< last member, because it uses the other members
 };
 
 }  // namespace mw::machine

@@ -19,7 +19,7 @@ namespace {
 
 namespace script = hal::script;
 
-/// Values for [SECTION]KEY; each key that a HAL file uses becomes known.
+/// Values for [SECTION]KEY. Each key that a HAL file uses becomes known.
 class IniValues final : public script::IniLookup {
   public:
     explicit IniValues(ini::IniReader &reader) : reader_(reader) {}
@@ -29,7 +29,7 @@ class IniValues final : public script::IniLookup {
         if (entry == nullptr) {
             return std::nullopt;
         }
-        // Custom sections cause no warnings: only keys of known sections need to become known.
+        // Only keys of known sections need to become known, because custom sections cause no warnings.
         reader_.know_if_ours(section, name);
         return entry->value;
     }
@@ -85,7 +85,7 @@ class RealtimePrograms final : public script::ProgramHost {
     script::ProgramHost &system_;
 };
 
-/// Loads a user's module instead of `ours` (homemod, tpmod), and checks that it is one.
+/// Loads a user's module instead of `ours` (homemod, tpmod), and checks that it is of this type.
 Result<> load_instead(script::Session &session, const std::string &ours, const HalStep &module) {
     const std::vector<std::string> words = split_words(module.text);
     if (words.empty() || words[0] == ours) {
@@ -128,7 +128,7 @@ Result<> run_two_pass_steps(script::Session &session, const std::vector<HalStep>
     return done;
 }
 
-/// If the session continues after errors, so do the steps: each failure is reported once.
+/// Runs the steps. If the session continues after errors, so do the steps, and each failure is reported once.
 Result<> run_steps(script::Session &session, const std::vector<HalStep> &steps, diagnostics::Sink &sink) {
     for (const HalStep &step : steps) {
         const int errors_before = sink.count_errors();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs the HAL files and commands that an INI names, in order.
+// Runs the HAL files and commands of an INI file, in order.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@ namespace mw::machine {
 
 class HalSetup {
   public:
-    /// `programs`: starts programs of loadusr besides the parts of this process; null: none are started.
+    /// `programs` starts programs of loadusr that are not parts of this process; null: none are started.
     HalSetup(const MachineParts &parts, hal::Host &host, hal::script::ProgramHost *programs,
              const MachineOptions &options)
         : parts_(parts), host_(host), programs_(programs), options_(options) {}

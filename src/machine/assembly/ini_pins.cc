@@ -191,7 +191,7 @@ void IniPins::destroy() {
     }
 }
 
-/// Reports values that are not accepted, with the name of the pin.
+/// Reports values that were not accepted, with the name of the pin.
 bool IniPins::isTaken(const Pin &pin, double value, task::Task &task) const {
     const auto refuse = [&](const std::string &why) {
         task.post(messages::MessageKind::OPERATOR_ERROR, fmt::format("{} is {}: {}", pin.name, value, why));

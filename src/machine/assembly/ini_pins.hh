@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Settings of the INI file that may be changed at run time by HAL pins: component "inihal".
+// HAL pins that change settings of the INI file at run time: component "inihal".
 #pragma once
 
 #include <string>
@@ -14,14 +14,14 @@
 namespace mw::machine {
 
 /// ini.N.* of joints, ini.L.* of axes, ini.traj-*, from one table in ini_pins.cc. Their initial values are
-/// those of the INI file, 0 where it has none. Not realtime; one thread.
+/// those of the INI file, or 0 if the key is not set. Not realtime; one thread.
 class IniPins {
   public:
     /// [TRAJ]DEFAULT_LINEAR_VELOCITY and DEFAULT_LINEAR_ACCELERATION, which have no effect.
     struct Defaults {
         double velocity = 0, acceleration = 0;
     };
-    /// Makes the component and its pins.
+    /// Creates the component and its pins.
     Result<> create(hal::Instance &hal, const std::vector<motion::SetParameter> &parameters, int num_joints,
                     const Defaults &defaults);
     void destroy();
@@ -29,7 +29,7 @@ class IniPins {
     /// mode; nothing changes during homing.
     void step(task::Task &task);
 
-    /// Meaning of a pin.
+    /// Effect of a pin.
     struct Use {
         motion::Parameter parameter = motion::Parameter::COUNT;  ///< COUNT: no effect
         bool isRate = false;                                     ///< changes only at standstill

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A whole machine from an INI, under either clock.
+// A whole machine from an INI file, under the realtime or the virtual clock.
 #pragma once
 
 #include <cstdint>
@@ -29,17 +29,17 @@ struct MachineParts {
 struct MachineOptions {
     bool clock_virtual = false;        ///< set by make_virtual_machine()
     bool strict = false;               ///< unknown INI keys are errors
-    bool isLasting = false;            ///< it continues for clients when a program has ended
-    std::string homing_module;         ///< instead of [EMCMOT]HOMEMOD
-    std::string planner_module;        ///< instead of [TRAJ]TPMOD
+    bool isLasting = false;            ///< keeps running for clients after a program has ended
+    std::string homing_module;         ///< replaces [EMCMOT]HOMEMOD
+    std::string planner_module;        ///< replaces [TRAJ]TPMOD
     bool tool_table_reported = false;  ///< the caller has reported errors in the tool table
     std::string instance;              ///< HAL instance of a realtime machine; empty: the user's default
-    /// Extra folders for HAL library files, before our own.
+    /// Additional folders of HAL library files, searched before our own.
     std::vector<std::string> hal_library;
     /// Folders in which HAL files are searched before that of the INI file.
     std::vector<std::string> hal_folders;
-    /// Used instead of the machine's own journal; it outlives the machine. Without it a machine under the
-    /// virtual clock keeps none.
+    /// Replaces the machine's own journal; it must outlive the machine. Without it a machine under the
+    /// virtual clock has no journal.
     journal::Writer *journal = nullptr;
     bool kept_going = false;  ///< errors in a HAL file are reported, and its other lines are run
 };
@@ -47,7 +47,7 @@ struct MachineOptions {
 /// Realtime figures of a run; zero under the virtual clock.
 struct RealtimeFigures {
     bool realtime = false;
-    std::string missing;  ///< why it is not realtime, empty otherwise
+    std::string missing;  ///< reason why the machine is not realtime, else empty
     std::uint64_t overruns = 0;
     std::int64_t max_latency_ns = 0;
 };
@@ -66,9 +66,9 @@ class Machine {
     /// cycle.
     virtual Result<> health() const { return {}; }
 
-    /// Client of the code that runs the machine in this process.
+    /// The client for the code that runs the machine in this process.
     virtual client::Client &client() = 0;
-    /// For more clients in this process.
+    /// The mailbox for more clients in this process.
     virtual mailbox::Segment &mailbox() = 0;
     virtual task::Task &task() = 0;
     virtual motion::Channels &channels() = 0;
@@ -77,13 +77,13 @@ class Machine {
     virtual journal::Writer *journal() { return nullptr; }
 };
 
-/// Errors in lines of a file have been reported to the sink, and have Error::isTold set. Creates the machine
-/// in this process, under the virtual clock: deterministic, as fast as the processor allows.
+/// Creates the machine in this process, under the virtual clock: deterministic, as fast as the processor
+/// allows. Errors in lines of a file have been reported to the sink, and have Error::isTold set.
 Result<std::unique_ptr<Machine>> make_virtual_machine(const MachineParts &parts,
                                                       const MachineOptions &options);
 
-/// Creates the machine as two processes: this one with task, and the realtime process that it starts and that
-/// ends with it.
+/// Creates the machine as two processes: this one with task, and the realtime process, which it starts and
+/// which ends with it.
 Result<std::unique_ptr<Machine>> make_realtime_machine(const MachineParts &parts,
                                                        const MachineOptions &options);
 

@@ -25,9 +25,9 @@ namespace {
 
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr int CONFIGURE_CYCLES = 3000;
-/// For each thread that runs task. A running program, a stop and their messages need less.
+/// Per thread that runs task. A running program, a stop and their messages need less.
 constexpr std::size_t HEAP_RESERVE = std::size_t{16} << 20;
-/// Maximum wait for a call of the interpreter at the end of the machine.
+/// Maximum wait for a call of the interpreter when the machine ends.
 constexpr std::int64_t END_OF_CALL_NS = NS_PER_S / 5;
 
 std::int64_t monotonic_ns() {
@@ -36,8 +36,8 @@ std::int64_t monotonic_ns() {
     return now.tv_sec * NS_PER_S + now.tv_nsec;
 }
 
-/// After a crash of task its realtime process brakes, switches the amplifiers off and ends: the next start
-/// waits for that.
+/// After a crash of task its realtime process brakes, switches the amplifiers off and ends. The next start
+/// waits for this.
 void wait_for_end_of(const std::string &instance) {
     constexpr std::int64_t PATIENCE_NS = 5 * NS_PER_S;
     constexpr timespec A_WHILE{0, 20000000};
@@ -62,7 +62,7 @@ class RealtimeMachine final : public Machine {
     Result<> start(const MachineOptions &options) {
         const std::string instance = options.instance.empty() ? hal::default_instance() : options.instance;
         wait_for_end_of(instance);
-        // First: another machine of this name rejects the start before any driver is loaded.
+        // Created first, so that a second machine of this name is rejected before any driver is loaded.
         auto mailbox = mailbox::Memory::create(instance);
         if (!mailbox.has_value()) {
             return std::unexpected(mailbox.error());
@@ -95,7 +95,7 @@ class RealtimeMachine final : public Machine {
         next_ns_ += parts_.config.task_period_ns;
         const std::int64_t now = monotonic_ns();
         if (next_ns_ < now) {
-            next_ns_ = now;  // late: the missed cycles are skipped
+            next_ns_ = now;  // late: skips the missed cycles
         }
         cycles_->give_back();
         const timespec until{next_ns_ / NS_PER_S, next_ns_ % NS_PER_S};
@@ -142,7 +142,7 @@ class RealtimeMachine final : public Machine {
     hal::Instance &hal() override { return host_->hal(); }
 
   private:
-    /// In the thread of the cycles.
+    /// Runs in the thread of the cycles.
     void step_task(std::int64_t now_ns) {
         if (!reserved_) {
             reserved_ = true;
@@ -152,14 +152,14 @@ class RealtimeMachine final : public Machine {
     }
     void shut_down() {
         if (host_ != nullptr) {
-            // Programs of loadusr use the HAL of this machine: they end with it.
+            // Programs of loadusr use the HAL of this machine, so they end with it.
             if (programs_) {
                 static_cast<void>(programs_->stop_all());
             }
             static_cast<void>(host_->shut_down());
         }
     }
-    /// A script or a disk that does not respond still uses task, which therefore cannot be destroyed.
+    /// A script or a disk that does not respond still uses task, so task cannot be destroyed.
     [[noreturn]] void end_beside_call() {
         parts_.sink.error(
             "the interpreter is still busy (a slow disk, or Python): the machine ends without it");
@@ -177,7 +177,7 @@ class RealtimeMachine final : public Machine {
     std::optional<CycleThread> cycles_;
     Lateness lateness_;
     bool watched_ = false;
-    bool reserved_ = false;  ///< used in the thread of the cycles
+    bool reserved_ = false;  ///< used only in the thread of the cycles
     std::int64_t next_ns_;
 };
 

@@ -40,7 +40,8 @@ TaskSide::~TaskSide() {
     io_pins_.destroy();
 }
 
-/// Before other clients: clients that poll for the machine take all slots until task frees them.
+/// Takes the reserved slots before other clients, because clients that poll for the machine take all slots
+/// until task frees them.
 Result<> TaskSide::take_places() {
     auto client = client::Client::join(mailbox_.segment());
     if (!client.has_value()) {
@@ -85,7 +86,7 @@ Result<> TaskSide::start(const MachineOptions &options) {
     return {};
 }
 
-/// From now on clients find a machine that is ready for them.
+/// From now on clients find the machine ready.
 Result<> TaskSide::identify() {
     mailbox::Identity identity;
     if (!identity.ini.assign(whole_path(parts_.ini.path()))) {
@@ -131,7 +132,7 @@ Result<> TaskSide::run_hal_files(const MachineOptions &options) {
                : status;
 }
 
-/// A person may be at any client.
+/// Reported to all clients, because a person may be at any of them.
 void TaskSide::tell_tool_change(ToolHand hand, const std::string &text) {
     if (hand == ToolHand::PERSON) {
         task_->post(messages::MessageKind::OPERATOR_TEXT, text);
@@ -177,7 +178,7 @@ Result<bool> TaskSide::isConfigured() {
 }
 
 Result<> TaskSide::finish_start(Machine &machine, int most_cycles) {
-    constexpr int POINTS_PER_CYCLE = 32;  // at least
+    constexpr int POINTS_PER_CYCLE = 32;  // minimum number of points
     for (const auto &table : parts_.config.screw_tables) {
         most_cycles += static_cast<int>(table.size()) / POINTS_PER_CYCLE;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Everything of a machine that is not realtime: I/O and task pins, halui, HAL files, tool table, task.
+// The part of a machine that is not realtime: I/O and task pins, halui, HAL files, tool table, task.
 #pragma once
 
 #include <functional>
@@ -26,12 +26,12 @@ namespace mw::machine {
 /// complete.
 class TaskSide final : private task::IoPins {
   public:
-    /// `programs`: starts the programs of HAL files, and outlives this; null: none are started.
+    /// `programs` starts the programs of HAL files and must outlive this object; null: none are started.
     TaskSide(const MachineParts &parts, hal::Host &host, mailbox::Memory mailbox,
              hal::script::ProgramHost *programs);
     ~TaskSide() override;
 
-    /// Creates pins, runs the HAL files, starts the threads, creates task and sends it the motion settings.
+    /// Creates pins, runs the HAL files, starts the threads, creates task and sends the motion settings.
     Result<> start(const MachineOptions &options);
     /// Runs cycles until motion has accepted all settings, then reads the parameter file and announces the
     /// state to the interpreter. An error names the first rejected setting.
@@ -43,16 +43,16 @@ class TaskSide final : private task::IoPins {
 
     client::Client &client() { return *client_; }
     mailbox::Segment &mailbox() { return mailbox_.segment(); }
-    /// Writes pending files, at most 0.5 s; nothing is written afterwards.
+    /// Writes pending files, waiting at most 0.5 s. Nothing is written afterwards.
     void finish_files() {
         if (journal_ != nullptr) {
             journal_->finish();
         }
     }
-    /// Clients no longer find the machine.
+    /// After this, clients do not find the machine.
     void remove_mailbox() { mailbox_.remove(); }
     task::Task &task() { return *task_; }
-    /// Null under the virtual clock, and if the options give one.
+    /// Null under the virtual clock, and if the options contain a journal.
     journal::Writer *journal() { return journal_.get(); }
     motion::Channels &channels() { return *channels_; }
 
@@ -77,14 +77,14 @@ class TaskSide final : private task::IoPins {
     MachineParts parts_;
     hal::Host &host_;
     hal::script::ProgramHost *programs_;
-    mailbox::Memory mailbox_;  ///< outlives its clients
+    mailbox::Memory mailbox_;  ///< must outlive its clients
     std::optional<client::Client> client_;
     io::Pins io_pins_;
     IniPins ini_pins_;
     halui::Halui halui_;
     ManualToolChange tool_change_;
     IniParameters parameters_;
-    std::unique_ptr<journal::Writer> journal_;  ///< outlives its users
+    std::unique_ptr<journal::Writer> journal_;  ///< must outlive its users
     std::unique_ptr<task::ToolStore> tools_;
     bool lasting_ = false;
     motion::Channels *channels_ = nullptr;

@@ -19,7 +19,7 @@ class VirtualMachine final : public Machine {
   public:
     explicit VirtualMachine(const MachineParts &parts) : parts_(parts) {}
     ~VirtualMachine() override {
-        // The task side ends first: its pins are in the host's instance, and its periodic runs it.
+        // The task side ends first, because its pins are in the host's instance and its periodic runs it.
         if (periodic_.value != 0) {
             scheduler_.remove(periodic_);
         }
@@ -37,7 +37,7 @@ class VirtualMachine final : public Machine {
         host_ = std::move(*host);
         side_ = std::make_unique<TaskSide>(parts_, *host_, mailbox::Memory::in_process(), nullptr);
         const hal::UseInstance use(&host_->hal());
-        // Components run in this process: their crash ends it.
+        // Components run in this process, so their crash ends it.
         hal::report_crashes("millwright");
         MachineOptions mine = options;
         mine.clock_virtual = true;

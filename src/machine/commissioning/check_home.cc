@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Steps of a homed joint: its home switch, and how far it can travel.
+// Steps for a homed joint: its home switch, and its travel.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,15 +12,16 @@
 namespace mw::commissioning {
 namespace {
 
-/// Homing may move a joint by a part more than its travel, and to and fro at the switch.
+/// Maximum distance of homing relative to the travel of the joint; homing may also move to and fro at the
+/// switch.
 constexpr double TRAVEL_FACTOR = 1.3, CLEARANCE_MM = 20;
-/// A position that changes by more than the maximum speed in this time was set [s].
+/// A position that changes by more than the maximum speed in this time was set, not moved [s].
 constexpr double JUMP_S = 0.01;
-/// A request to home shows in the state of the machine within this time, and a stop has ended within this one
-/// [s].
+/// A home request is visible in the state of the machine within REACTION_S; a stop has ended within the other
+/// time [s].
 constexpr double REACTION_S = 0.2, STOPPING_S = 3;
 
-/// Where the board counts the joint.
+/// Name of the pin with the counts of the board for the joint.
 std::string counts_name(const Stage &stage, int joint) {
     const setup::Motor &motor = stage.motor(joint);
     switch (stage.plan().board) {
@@ -37,8 +38,8 @@ Prompt hold(const char *step, const Stage &stage, int joint, const std::string &
     return prompt;
 }
 
-// Texts are chosen outside of coroutines: GCC 12 destroys temporaries of a conditional expression in one
-// twice.
+// Texts are selected outside of coroutines, because GCC 12 destroys temporaries of a conditional expression
+// in a coroutine twice.
 Prompt home_prompt(const Stage &stage, int joint) {
     const std::string name = to_upper(stage.motor(joint).name);
     const std::string text =
@@ -61,7 +62,7 @@ std::string enable_text(const Stage &stage, int joint) {
                              to_upper(stage.motor(joint).name));
 }
 
-/// How far a joint has moved. Homing sets the position at the switch: such a jump is no motion.
+/// Distance that a joint has moved. Homing sets the position at the switch; such a jump is not motion.
 class Travel {
   public:
     Travel(double start, double most_step) : last_(start), most_step_(most_step) {}
@@ -115,7 +116,7 @@ Flow<Fault> home_while_held(Stage &stage, int joint) {
 }
 
 Flow<std::optional<double>> counts_at_home(Stage &stage, int joint) {
-    // A servo at standstill moves between neighbouring counts.
+    // Averages samples, because a servo at standstill moves between neighbouring counts.
     constexpr int SAMPLES = 200;
     std::optional<double> sum = 0;
     for (int i = 0; i < SAMPLES && sum.has_value(); ++i) {
@@ -189,7 +190,8 @@ Flow<Finding> check_travel(Stage &stage, int joint) {
     const double sign = axis.home_at_max ? -1 : 1;
     const double start = stage.bench().joint(joint).command;
     const double limit = axis.home_at_max ? axis.min : axis.max;
-    // Ends of travel are looked for at a speed at which the axis stops within a fraction of a millimetre.
+    // The search for the ends of travel uses a speed at which the axis stops within a fraction of a
+    // millimetre.
     const double speed = std::min(axis.speed / 4, stage.plan().small(axis, 8));
     Prompt prompt = hold(
         "travel", stage, joint,
@@ -205,7 +207,7 @@ Flow<Finding> check_travel(Stage &stage, int joint) {
         co_return found("travel", stage, joint, fault_of(ending));
     }
     const double reached = stage.bench().joint(joint).command;
-    // Back to the middle: the next steps rely on the clearance there.
+    // Moves back to the middle, because the next steps rely on the clearance there.
     Prompt back = hold("travel", stage, joint,
                        fmt::format("Hold the button: {} moves back to the middle.", name), "The table.");
     const Ending centred =

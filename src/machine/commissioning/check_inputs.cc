@@ -29,7 +29,7 @@ std::vector<bool> levels(Stage &stage) {
     return all;
 }
 
-/// Inputs that change although nothing is touched.
+/// Number of inputs that change although the operator touches nothing.
 Flow<int> count_changes(Stage &stage, double seconds) {
     auto last = levels(stage);
     int changes = 0;
@@ -45,7 +45,7 @@ Flow<int> count_changes(Stage &stage, double seconds) {
     co_return changes;
 }
 
-/// The first input that differs from `rest`; none in time or the operator cannot: -1.
+/// The first input that differs from `rest`; -1 after the timeout, or if the operator cannot operate one.
 Flow<int> wait_for_change(Stage &stage, std::vector<bool> rest) {
     const double end_s = stage.bench().now_s() + PATIENCE_S;
     while (stage.bench().now_s() < end_s && !stage.isGivenUp()) {
@@ -68,7 +68,7 @@ Flow<> wait_for_rest(Stage &stage, std::vector<bool> rest) {
     co_await stage.wait(SETTLE_S);
 }
 
-/// Contact of a switch the other way round.
+/// Inverts the contact of a switch.
 void turn_contact(Stage &stage, int joint) {
     const std::string key = stage.motor(joint).name + ".home_contact";
     stage.change(key, stage.motor(joint).home_contact_closed ? "open" : "closed");

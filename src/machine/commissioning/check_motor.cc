@@ -35,8 +35,8 @@ void reverse_motor(Stage &stage, int joint) {
     }
 }
 
-/// The speed command is the commanded speed alone: a wrong sign of the encoder cannot make the motor run
-/// away.
+/// Sets the output to the commanded speed without feedback, so that a wrong sign of the encoder cannot cause
+/// a runaway.
 void open_loop(Stage &stage, int joint) {
     const std::string pid = "pid-" + stage.motor(joint).name;
     for (const char *gain : {".Pgain", ".Igain", ".Dgain", ".FF2"}) {
@@ -51,7 +51,7 @@ struct Seen {
     double commanded = 0, counted = 0;
 };
 
-/// Moves a little in the positive direction and asks what was seen.
+/// Moves a short distance in the positive direction and asks which direction the operator saw.
 Flow<Seen> look_at_direction(Stage &stage, int joint) {
     const setup::Axis &axis = stage.axis(joint);
     const double distance = stage.plan().small(axis, stage.plan().is_servo ? 0.7 : 3);
@@ -80,7 +80,7 @@ Flow<Seen> look_at_direction(Stage &stage, int joint) {
     co_return seen;
 }
 
-/// Whether the encoder counts as the table moves.
+/// Checks whether the encoder counts while the table moves.
 Fault judge_encoder(const Seen &seen) {
     const double part = seen.counted / seen.commanded;
     constexpr double LEAST = 0.1;
@@ -91,7 +91,7 @@ Fault judge_encoder(const Seen &seen) {
     return counts_up == (seen.way == "positive") ? Fault::NONE : Fault::ENCODER_PHASES_SWAPPED;
 }
 
-/// Asks whether the encoder is reversed here; false: it is to be rewired.
+/// Asks whether the encoder may be reversed in the configuration; false: it will be rewired.
 Flow<bool> may_reverse_encoder(Stage &stage, int joint) {
     Prompt question = make_prompt(
         "direction", stage.motor(joint).name,
@@ -154,7 +154,7 @@ struct Measured {
     double commanded = 0, measured = 0;
 };
 
-/// Takes up the play, lets the operator zero a gauge, moves, and requires the measured travel.
+/// Takes up the play, asks the operator to zero a gauge, moves, and asks for the measured travel.
 Flow<Measured> measure_travel(Stage &stage, int joint, double distance) {
     const double speed = stage.slow(joint);
     const std::string name = to_upper(stage.motor(joint).name);
@@ -188,14 +188,14 @@ Flow<Measured> measure_travel(Stage &stage, int joint, double distance) {
     if (!value.has_value()) {
         co_return Measured{Fault::GIVEN_UP, 0, 0};
     }
-    // Back to the middle: the next steps rely on the clearance there.
+    // Moves back to the middle, because the next steps rely on the clearance there.
     Prompt back = hold("scale", stage, joint, fmt::format("Hold the button: {} moves back.", name));
     const Ending centred =
         co_await stage.move_while_held(joint, Motion{-distance / 2, speed}, std::move(back));
     co_return Measured{fault_of(centred), distance, *value};
 }
 
-/// Distances of the rounds: short while the scale may be very wrong.
+/// Travel of each round; short while the scale may be very wrong.
 double distance_of_round(const Stage &stage, int joint, int round) {
     const setup::Axis &axis = stage.axis(joint);
     const double travel = axis.max - axis.min;
@@ -250,8 +250,8 @@ Flow<Finding> check_scale(Stage &stage, int joint) {
 
 namespace {
 
-// Texts are chosen outside of coroutines: GCC 12 destroys temporaries of a conditional expression in one
-// twice.
+// Texts are selected outside of coroutines, because GCC 12 destroys temporaries of a conditional expression
+// in a coroutine twice.
 Prompt backlash_prompt(const Stage &stage, int joint, bool isBack) {
     const std::string name = to_upper(stage.motor(joint).name);
     return hold("backlash", stage, joint,
@@ -272,7 +272,8 @@ Flow<Finding> measure_backlash(Stage &stage, int joint) {
     if (off != Fault::NONE) {
         co_return found("backlash", stage, joint, off);
     }
-    // Up to the position, farther and back to it: the play shows between the two approaches.
+    // Moves to the position, farther, and back to it. The backlash is the difference between the two
+    // approaches.
     Ending ending = Ending::DONE;
     double reading = 0;
     for (int leg = 0; leg < 3 && ending == Ending::DONE; ++leg) {

@@ -37,7 +37,7 @@ Flow<Turned> turn(Stage &stage, double speed_rpm) {
     co_await stage.wait(RUN_UP_S);
     Prompt read = make_prompt("spindle", "", "Read the tachometer.");
     read.unit = "rev/min";
-    // The spindle stops when no measurement is entered in time.
+    // Maximum time for entering a measurement; after it the spindle stops.
     constexpr double PATIENCE_S = 120;
     const std::optional<double> value = co_await stage.measure(std::move(read), PATIENCE_S);
     const bool was_on = stage.bench().isOn();

@@ -9,7 +9,7 @@
 namespace mw::commissioning {
 namespace {
 
-/// A computer that cannot make the steps of a corrected scale at this speed moves the axis at a lower speed.
+/// If the computer cannot make the steps of a corrected scale at this speed, the axis speed is reduced.
 setup::Answers with_possible_speeds(setup::Answers answers) {
     constexpr double PART = 0.95, DIGITS = 1000;
     constexpr int MOST_TIMES = 100;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The answers about the machine as the steps correct them, and the plan that follows from them.
+// The answers about the machine, as corrected by the steps, and the plan that follows from them.
 #pragma once
 
 #include <string>
@@ -27,16 +27,16 @@ class CurrentAnswers {
     const char *unit(int joint) const;
     /// Joints of the axis of a joint.
     std::vector<int> joints_of_axis(int joint) const;
-    /// It moves an axis together with another motor.
+    /// True if the motor moves an axis together with another motor.
     bool isOneOfTwo(int joint) const { return axis(joint).motors.size() > 1; }
 
-    /// Changes answers together. What does not fit the other answers is not changed: it is a fault of the
-    /// step.
+    /// Changes several answers together. A value that does not fit the other answers is not changed and
+    /// becomes a fault of the step.
     void change(const setup::Answers &changed);
     void change(const std::string &key, std::string value) { change({{key, std::move(value)}}); }
-    /// Answers that were changed since the last call, with their values before.
+    /// Answers that were changed since the last call, with their previous values.
     setup::Answers take_changes() { return std::exchange(before_, {}); }
-    /// Why a change was not accepted since the last call; empty: all were.
+    /// The reason why a change since the last call was not accepted; empty if all were accepted.
     std::string take_rejected() { return std::exchange(rejected_, {}); }
 
   private:

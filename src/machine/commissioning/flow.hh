@@ -43,8 +43,8 @@ struct FlowPromise<void> : FlowPromiseBase {
 
 }  // namespace detail
 
-/// Does nothing until it is awaited, or, if it is the outermost one, started. Destroying it ends it at the
-/// cycle for which it waits, with the destructors of its locals.
+/// Starts when it is awaited, or when start() is called for the outermost flow. Destroying it ends it at the
+/// cycle for which it waits, with the destructors of its local variables.
 template <class T = void>
 class [[nodiscard]] Flow {
   public:

@@ -92,7 +92,7 @@ void Guide::cycle() {
     }
 }
 
-/// A machine that went off and a rejected value are faults of every step.
+/// In every step, a machine that went off and a rejected value are faults.
 void Guide::judge(Finding &finding) {
     const int joint = steps_[current_].joint;
     const bool is_drive = joint >= 0 && stage_.bench().joint(joint).isDriveFaulted;
@@ -120,7 +120,7 @@ bool Guide::isReady() const {
 void Guide::repeat() {
     if (isFaulted()) {
         findings_[current_].reset();
-        // The step has changed values in the machine: it begins with those of the files.
+        // The step has changed values in the machine, which is restarted with the values of the files.
         stage_.want_restart();
     }
 }
@@ -133,7 +133,7 @@ void Guide::undo(std::size_t step) {
     static_cast<void>(stage_.take_changes());
     findings_[step].reset();
     current_ = std::min(current_, step);
-    // What was found with the changed answers is no longer valid for this motor.
+    // Findings of later steps for this motor are not valid with the changed answers.
     for (std::size_t i = step; i < findings_.size(); ++i) {
         if (steps_[i].joint == steps_[step].joint) {
             findings_[i].reset();

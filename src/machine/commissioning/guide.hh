@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Leads an operator through the steps of commissioning. A screen, a terminal or a script shows its prompts.
+// Guides an operator through the steps of commissioning. A screen, a terminal or a script shows its prompts.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,8 @@ std::vector<Step> steps_of(const setup::Plan &plan);
 class Guide {
   public:
     explicit Guide(setup::Answers answers);
-    /// With what earlier sessions have found. `isWanted`: the steps of this session; others are skipped.
+    /// Begins with the findings of earlier sessions. `isWanted` selects the steps of this session; other
+    /// steps are skipped.
     Guide(setup::Answers answers, std::vector<Finding> known, bool (*isWanted)(const Step &));
     ~Guide() { stop(); }
     Guide(const Guide &) = delete;
@@ -33,7 +34,7 @@ class Guide {
 
     void attach(Bench *bench) { stage_.attach(bench); }
     void cycle();
-    /// The machine has to be written and started again with answers().
+    /// True if the machine must be written and started again with answers().
     bool isRestartWanted() const { return stage_.isRestartWanted(); }
 
     const setup::Answers &answers() const { return stage_.answers(); }
@@ -42,20 +43,20 @@ class Guide {
     bool act(int prompt_number, const Act &act) { return stage_.act(prompt_number, act); }
 
     const std::vector<Step> &steps() const { return steps_; }
-    /// The step that runs or comes next.
+    /// The current step, or the next one.
     std::size_t current() const { return current_; }
-    /// The newest finding of each step; nothing: the step has not been done, or has to be done again.
+    /// The newest finding of each step; nothing: the step has not been done, or must be repeated.
     const std::vector<std::optional<Finding>> &findings() const { return findings_; }
     bool isRunning() const { return flow_.has_value(); }
-    /// All wanted steps are done, or one has a fault: repeat() or stop().
+    /// True if all selected steps are done, or a step has a fault. Then call repeat() or stop().
     bool isOver() const { return !isRunning() && (isFaulted() || current_ == steps_.size()); }
     bool isFaulted() const;
-    /// All steps are done without a fault.
+    /// True if all steps are done without a fault.
     bool isReady() const;
 
-    /// Does the current step again, after a new start of the machine.
+    /// Repeats the current step after a restart of the machine.
     void repeat();
-    /// Takes back what a step has changed; it has to be done again. The machine must be restarted.
+    /// Undoes the changes of a step, which must then be repeated. The machine must be restarted.
     void undo(std::size_t step);
     /// Stops the motion, switches the machine off and ends the current step.
     void stop();

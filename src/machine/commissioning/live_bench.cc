@@ -40,7 +40,7 @@ void LiveBench::update() {
     }
     if (hasWatchdog()) {
         *watchdog_beat_ = !*watchdog_beat_;
-        // It starts again only from here, not after a pause of this program.
+        // The watchdog is enabled only here, not after a pause of this program.
         *watchdog_enable_ = !std::exchange(isRestartingWatchdog_, false);
     }
     post_waiting();
@@ -176,7 +176,7 @@ void LiveBench::switch_on(const std::vector<int> &joints) {
         last_error_ = "the machine has no watchdog of commissioning";
         return;
     }
-    // A drive that cannot be kept off is a reason to stay off.
+    // If a drive cannot be kept off, the machine is not switched on.
     if (const auto gated = close_gates_except(joints); !gated.has_value()) {
         last_error_ = gated.error().str();
         return;
@@ -197,7 +197,7 @@ void LiveBench::move_to(int joint, double position, double speed) {
 }
 
 void LiveBench::stop(int joint) {
-    // A homing that was requested may not show in the status yet.
+    // The status may not show a requested homing yet.
     if (joint == homing_joint_ || client_.status().joints[static_cast<std::size_t>(joint)].isHoming) {
         post(messages::AbortAll{});
     } else {

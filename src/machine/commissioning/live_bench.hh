@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The bench of a machine that runs in this process or in its realtime process: commands by its client, single
-// drives by its HAL.
+// The bench for a machine in this process or in its realtime process. Commands go through its client, single
+// drives through its HAL.
 #pragma once
 
 #include <deque>
@@ -14,11 +14,12 @@
 
 namespace mw::commissioning {
 
-/// HAL commands for the machine of a bench, after its own: a watchdog in the servo thread. A program that
-/// does not update() its bench in time has its machine switched off.
+/// HAL commands that add a watchdog to the servo thread. If a program does not call update() of its bench in
+/// time, the machine is switched off.
 std::vector<std::string> watchdog_commands();
 
-/// One thread. update() in each task cycle, before the guide. The machine has run watchdog_commands().
+/// One thread. Call update() in each task cycle before the guide. The machine must have run
+/// watchdog_commands().
 class LiveBench final : public Bench {
   public:
     LiveBench(client::Client &client, hal::Instance &hal, int joints);
@@ -47,7 +48,7 @@ class LiveBench final : public Bench {
     void set_value(std::string_view name, double value) override;
 
   private:
-    /// An input of a drive that was taken from its signal.
+    /// An input of a drive that was unlinked from its signal.
     struct Gate {
         int joint = 0;
         std::string pin, signal;
@@ -58,11 +59,11 @@ class LiveBench final : public Bench {
     Result<> close_gates_except(const std::vector<int> &joints);
     bool hasWatchdog() const { return watchdog_beat_ != nullptr && watchdog_enable_ != nullptr; }
     void reject(std::string why);
-    /// Posts at once; what waits is dropped.
+    /// Posts a command at once and drops waiting commands.
     void post(const messages::Command &command);
-    /// Posts the next command that waits, when the one before has ended well.
+    /// Posts the next waiting command when the previous one has succeeded.
     void post_waiting();
-    /// Where a bit of HAL is; null: it does not exist.
+    /// Address of a HAL bit; null if it does not exist.
     volatile bool *find_bit(const std::string &name);
 
     client::Client &client_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the steps have found: the content of the report.
+// The findings of the steps: the content of the report.
 #pragma once
 
 #include <string>
@@ -28,14 +28,14 @@ enum class Fault {
     SPINDLE,
     PROBE_NOT_CONNECTED,
     NOT_TUNED,
-    VALUE,     ///< what was measured does not fit the other answers
-    GIVEN_UP,  ///< the operator could not do what the step needs
-    STOPPED,   ///< the machine went off
+    VALUE,     ///< a measured value does not fit the other answers
+    GIVEN_UP,  ///< the operator could not do what the step requires
+    STOPPED,   ///< the machine was switched off
 };
 
 /// "motor not connected".
 std::string_view fault_name(Fault fault);
-/// What to do about it.
+/// Instruction for this fault.
 std::string_view fault_remedy(Fault fault);
 
 struct Value {
@@ -49,8 +49,8 @@ struct Finding {
     Fault fault = Fault::NONE;
     std::string detail;  ///< "input of Y changed"
     std::vector<Value> values;
-    setup::Answers before;  ///< the answers that the step has changed, as they were
-    setup::Answers after;   ///< and as they are now
+    setup::Answers before;  ///< the changed answers with their previous values
+    setup::Answers after;   ///< the changed answers with their new values
 };
 
 }  // namespace mw::commissioning

@@ -9,10 +9,10 @@
 namespace mw::commissioning {
 namespace {
 
-/// A button counts as released when its client has not renewed it for so long [s].
+/// Lease of a button: it counts as released if its client does not renew it in this time [s].
 constexpr double HOLD_LEASE_S = 0.25;
 constexpr double SWITCHING_TIMEOUT_S = 5;
-/// A request to the machine shows in its state within this time [s].
+/// A request to the machine is visible in its state within this time [s].
 constexpr double REACTION_S = 0.2;
 
 }  // namespace
@@ -208,7 +208,7 @@ Flow<Ending> Stage::move_in_turn(int joint, std::vector<Motion> motions, Prompt 
     co_return ending;
 }
 
-/// The target is fixed at the start, so that nothing that is requested twice adds up.
+/// The target is fixed at the start, so that a repeated request does not add distance.
 Flow<Ending> Stage::move_once(int joint, Motion motion, const Watch &watch) {
     const double stopping_s = 1 + 2 * motion.speed / axis(joint).acceleration;
     const double target = bench().joint(joint).command + motion.distance;
@@ -258,7 +258,8 @@ Flow<> Stage::restart() {
     constexpr double SETTLE_S = 0.2;
     co_await wait(SETTLE_S);
     isRestartWanted_ = true;
-    // The machine's side attaches a new bench before the next cycle. Cards at a serial bus take their time.
+    // The machine's side attaches a new bench before the next cycle. Cards on a serial bus may need a long
+    // time.
     co_await next_cycle();
     constexpr double START_S = 1;
     co_await wait(START_S);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The steps of commissioning. Each shows prompts, moves at most one joint slowly and a bounded distance while
-// a button is pressed. The guide switches the machine off after each.
+// The steps of commissioning. Each step shows prompts, and moves at most one joint, slowly, by a limited
+// distance, while a button is pressed. The guide switches the machine off after each step.
 #pragma once
 
 #include "machine/commissioning/stage.hh"
@@ -21,9 +21,9 @@ Flow<Finding> check_home(Stage &stage, int joint);
 Flow<Finding> check_travel(Stage &stage, int joint);
 // check_spindle.cc
 Flow<Finding> check_spindle(Stage &stage, int joint);
-/// Homes while the button is pressed, at most a little more than the travel of the joint.
+/// Homes while the button is pressed, over at most slightly more than the travel of the joint.
 Flow<Fault> home_while_held(Stage &stage, int joint);
-/// Where the board counts the joint, at standstill after homing. The joint is then unhomed. Nothing: the
+/// The counts of the board for the joint at standstill after homing. The joint is then unhomed. Nothing: the
 /// board has no such pin, and the machine is off.
 Flow<std::optional<double>> counts_at_home(Stage &stage, int joint);
 // tune_limits.cc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Maximum speed and acceleration of a motor: both are raised until steps are lost, or until a servo no longer
-// follows. Lost steps show at the home switch, whose position is known.
+// Maximum speed and acceleration of a motor: both are increased until steps are lost, or until a servo does
+// not follow. Lost steps are detected at the home switch, whose position is known.
 #include <algorithm>
 #include <cmath>
 
@@ -12,14 +12,15 @@
 namespace mw::commissioning {
 namespace {
 
-/// Of the greatest values without a fault, this part is kept: motors lose torque when they are warm and
-/// loaded.
+/// Fraction of the maximum values without a fault that is used, because motors lose torque when they are warm
+/// and loaded.
 constexpr double SPEED_PART = 0.7, ACCELERATION_PART = 0.5;
-/// Trials: from a part of the answered value, by a factor, up to a multiple of it.
+/// Values of the trials: from a fraction of the answered value, increased by a factor, up to a multiple of
+/// it.
 constexpr double FIRST = 0.7, FACTOR = 1.4, MOST = 4;
 /// Length of a trial.
 constexpr double PART_OF_TRAVEL = 0.35;
-/// Limits that were set are those of the controller after this time [s].
+/// New limits are active in the controller after this time [s].
 constexpr double LIMITS_S = 0.05;
 
 struct Limits {
@@ -27,7 +28,7 @@ struct Limits {
 };
 
 struct Trial {
-    Fault fault = Fault::NONE;  ///< the session cannot continue
+    Fault fault = Fault::NONE;  ///< fault after which the session cannot continue
     bool isGood = false;
 };
 
@@ -46,10 +47,10 @@ void set_limits(Stage &stage, int joint, const Limits &limits) {
     bench.set_value(generator + ".maxaccel", limits.acceleration * CATCH_UP_ACCELERATION);
 }
 
-/// The maximum speed for which steps can be made.
+/// The maximum speed for which the board can make steps.
 double most_speed(const Stage &stage, int joint) {
     const setup::Axis &axis = stage.axis(joint);
-    // It must be reached within a trial.
+    // The speed must be reached within a trial.
     const double reached = std::sqrt(axis.acceleration * (axis.max - axis.min) * PART_OF_TRAVEL * 0.9);
     const double answered = std::min(axis.speed * MOST, reached);
     const setup::Motor &motor = stage.motor(joint);
@@ -78,9 +79,9 @@ Prompt fast_prompt(const Stage &stage, int joint, const Limits &limits) {
                             limits.acceleration, stage.unit(joint)));
 }
 
-/// One move in one direction; the other moves are slow. Fast moves forth and back would lose as many steps in
-/// each direction, and the home switch would not show them. A motor that stalls in one of the moves and
-/// follows the others still ends inside the travel.
+/// One fast move in one direction; the other moves are slow. Fast moves in both directions would lose as many
+/// steps in each direction, and the home switch would not detect them. A motor that stalls in one of the
+/// moves and follows the others still ends inside the travel.
 Flow<Trial> try_direction(Stage &stage, int joint, Limits limits, bool isForth, double &home_counts) {
     const setup::Axis axis = stage.axis(joint);
     const std::string pid = "pid-" + stage.motor(joint).name;
@@ -154,10 +155,10 @@ Flow<Fault> enable_and_home(Stage &stage, int joint, double &home_counts) {
 
 struct Raised {
     Fault fault = Fault::NONE;
-    double greatest = 0;  ///< without a stall; 0: even the first one stalled
+    double greatest = 0;  ///< maximum without a stall; 0: the first trial stalled
 };
 
-/// Raises one of the two until a trial fails.
+/// Increases speed or acceleration until a trial fails.
 Flow<Raised> raise(Stage &stage, int joint, Limits limits, double Limits::*what, double most,
                    double &home_counts) {
     Raised raised;
@@ -199,7 +200,7 @@ Flow<Finding> tune_limits(Stage &stage, int joint) {
         speed = co_await raise(stage, joint, {axis.speed, axis.acceleration}, &Limits::speed,
                                most_speed(stage, joint), home_counts);
     }
-    // A servo that no longer followed is off.
+    // A servo that did not follow is off.
     if (speed.fault == Fault::NONE && !stage.bench().isOn()) {
         speed.fault = co_await enable_and_home(stage, joint, home_counts);
     }

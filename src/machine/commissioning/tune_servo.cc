@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The position controller of a servo: the speed at 10 V, then its gains from a relay test (Astrom and
-// Hagglund 1984), compared by the following error of the same moves before and after.
+// Hagglund 1984), compared by the following error of the same moves before and after tuning.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -28,11 +28,11 @@ std::string pid_of(const Stage &stage, int joint) {
 
 struct Followed {
     Ending ending = Ending::DONE;
-    double greatest = 0;  ///< following error [units]
+    double greatest = 0;  ///< maximum following error [units]
     double lag_s = 0;     ///< mean error at constant speed, divided by the speed [s]
 };
 
-/// Moves forth and back at a part of the maximum speed, and watches the following error.
+/// Moves to and fro at a fraction of the maximum speed, and measures the following error.
 Flow<Followed> follow(Stage &stage, int joint, double part) {
     const setup::Axis &axis = stage.axis(joint);
     const double speed = axis.speed * part;
@@ -67,7 +67,7 @@ struct Relay {
     double ultimate_gain = 0, ultimate_period_s = 0;
 };
 
-/// The controller is replaced with a relay until the loop has oscillated for some periods.
+/// Replaces the controller with a relay until the loop has oscillated for some periods.
 Flow<Relay> run_relay(Stage &stage, int joint) {
     const setup::Axis &axis = stage.axis(joint);
     const std::string pid = pid_of(stage, joint);
@@ -106,7 +106,7 @@ Flow<Relay> run_relay(Stage &stage, int joint) {
     }
     bench.set_value(pid + ".tune-start", 0);
     bench.set_value(pid + ".tune-mode", 0);
-    // The rules of Ziegler and Nichols, backwards: P = 0.6 Ku, D = P Tu / 8.
+    // The rules of Ziegler and Nichols, inverted: P = 0.6 Ku, D = P Tu / 8.
     const double p = bench.value(pid + ".Pgain").value_or(0), d = bench.value(pid + ".Dgain").value_or(0);
     relay.ultimate_gain = p / 0.6;
     relay.ultimate_period_s = p > 0 ? 8 * d / p : 0;
@@ -117,17 +117,17 @@ Flow<Relay> run_relay(Stage &stage, int joint) {
     co_return relay;
 }
 
-/// Least gain margin of the chosen proportional gain.
+/// Minimum gain margin of the chosen proportional gain.
 constexpr double GAIN_MARGIN = 3.5;
-/// Proportional gain times the lag and the delay of the loop: a phase margin of about 60 degrees.
+/// Proportional gain times the sum of lag and delay of the loop, for a phase margin of about 60 degrees.
 constexpr double GAIN_BY_LAG = 0.5, DELAY_S = 0.002;
 
 struct Gains {
     double p = 0, ff2 = 0;
 };
 
-/// For a drive that follows a speed command with a first-order lag: at the ultimate frequency w its gain is
-/// 1 / (w sqrt(1 + (w t)^2)) = 1 / Ku. Without a lag the samples of the loop alone limit the gain.
+/// For a drive that follows a speed command with a first-order lag: at the ultimate frequency w its gain is 1
+/// / (w sqrt(1 + (w t)^2)) = 1 / Ku. Without a lag only the sampling of the loop limits the gain.
 Gains gains_of(const Relay &relay) {
     const double w = 2 * std::numbers::pi / relay.ultimate_period_s;
     const double ratio = relay.ultimate_gain / w;
@@ -169,8 +169,8 @@ Flow<Finding> tune_servo(Stage &stage, int joint) {
         finding.fault = relay.ending == Ending::DONE ? Fault::NOT_TUNED : fault_of(relay.ending);
         co_return finding;
     }
-    // At constant speed v the output is v FF1 + P e, and the drive turns at v: its real speed at 10 V
-    // follows.
+    // At constant speed v the output is v FF1 + P e, and the drive runs at v. This gives its real speed at 10
+    // V.
     const setup::Servo &servo = stage.motor(joint).servo;
     const double drive_gain = 1 / (servo.ff1 + servo.p * before.lag_s);
     relay.ultimate_gain *= drive_gain;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Checks whether an INI file has the current form, which update_ini writes.
+// Checks whether an INI file has the current format, which update_ini writes.
 #pragma once
 
 #include "base/ini/ini_reader.hh"

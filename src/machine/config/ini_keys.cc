@@ -31,7 +31,7 @@ constexpr std::string_view OF_SCREENS =
     "POSITION_OFFSET PREFERENCE_FILE_PATH PREVIEW_TIMEOUT PYVCP PYVCP_POSITION SPINDLE_INCREMENT TITLE "
     "TKPKG TOOL_EDITOR TTT TTT_PREAMBLE USER_COMMAND_FILE";
 
-/// For each spindle, with its number in the middle.
+/// Beginning of a key of each spindle, before its number.
 constexpr std::string_view OF_SCREENS_AND_SPINDLES =
     "MIN_SPINDLE_0_SPEED MAX_SPINDLE_0_SPEED DEFAULT_SPINDLE_0_SPEED MIN_SPINDLE_0_OVERRIDE "
     "MAX_SPINDLE_0_OVERRIDE DEFAULT_SPINDLE_0_OVERRIDE MIN_SPINDLE_1_SPEED MAX_SPINDLE_1_SPEED "
@@ -80,7 +80,7 @@ IniKind kind_of(motion::ParameterUnit unit) {
     return IniKind::NUMBER;
 }
 
-/// Names in a constant text, to which the returned views refer.
+/// Adds the names in a constant text, to which the returned views refer.
 void add_names(std::vector<IniKey> &keys, std::string_view section, std::string_view names,
                std::string_view doc) {
     for (std::size_t begin = 0; begin < names.size();) {
@@ -114,7 +114,7 @@ std::string kind_text(const IniKey &key) {
 }
 
 std::string preset_text(const IniKey &key) {
-    constexpr double NO_LIMIT = 1e9;  // settings that use a large number as "none"
+    constexpr double NO_LIMIT = 1e9;  // LinuxCNC's value for "no limit"
     if (key.required) {
         return "required";
     }

@@ -134,12 +134,12 @@ inline constexpr auto INI_KEYS = std::to_array<ini::IniKey>({
                   "program that keeps the tools instead of TOOL_TABLE, with its arguments"),
 });
 
-/// Does not compile for a key that is not in the table above.
+/// The key must be in the table above; otherwise it does not compile.
 consteval const ini::IniKey &ini_key(std::string_view section, std::string_view name) {
     return ini::row_of(INI_KEYS, section, name);
 }
 
-/// Keys of joints that only HAL files read, and keys of [DISPLAY] that screens read; other keys of these
+/// Keys of joints that only HAL files read, and keys of [DISPLAY] that screens read. Other keys of these
 /// sections are reported as unknown.
 std::vector<ini::IniKey> ini_keys_of_others();
 /// The INI key of a setting of the motion controller.

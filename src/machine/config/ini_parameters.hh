@@ -10,7 +10,7 @@ namespace mw::machine {
 
 class IniParameters final : public gcode::ParameterSource {
   public:
-    /// `hal` may be null: then HAL values are unknown.
+    /// If `hal` is null, HAL values are unknown.
     IniParameters(const ini::IniFile &ini, hal::Instance *hal) : ini_(ini), hal_(hal) {}
 
     /// Section and key in upper or lower case, because G-code ignores case.

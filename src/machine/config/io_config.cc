@@ -12,13 +12,15 @@ using ini::IniReader, motion::Parameter;
 
 namespace {
 
-/// True for keys of [DISPLAY] that limit an override: MAX_FEED_OVERRIDE, MIN_SPINDLE_1_OVERRIDE and the like.
+/// True for keys of [DISPLAY] that limit an override, for instance MAX_FEED_OVERRIDE or
+/// MIN_SPINDLE_1_OVERRIDE.
 bool isOverrideLimit(std::string_view key) {
     const bool is_limit = key.starts_with("MIN_") || key.starts_with("MAX_") || key.starts_with("DEFAULT_");
     return is_limit && key.ends_with("_OVERRIDE");
 }
 
-/// Override limits are ratios; a value that looks like a percentage is 100 times the intended one.
+/// Checks override limits, which are ratios; a value that looks like a percentage is 100 times the intended
+/// value.
 void check_override_limits(IniReader &ini) {
     constexpr double MOST_PLAUSIBLE = 10, PERCENT = 100;
     for (const ini::IniEntry &entry : ini.file().entries()) {

@@ -7,9 +7,9 @@
 
 namespace mw::machine {
 
-/// Call after reading the settings of the interpreter.
+/// Call it after reading the settings of the interpreter.
 void read_io(ini::IniReader &ini, MachineConfig &machine);
-/// Call after reading the settings of motion.
+/// Call it after reading the settings of motion.
 void read_panel(ini::IniReader &ini, MachineConfig &machine);
 
 }  // namespace mw::machine

@@ -15,7 +15,7 @@ std::unique_ptr<LoadedConfig> LoadedConfig::load(const std::string &path, diagno
     return sink.hasErrors() ? nullptr : std::move(loaded);
 }
 
-/// From the first word of [KINS]KINEMATICS.
+/// Type of the kinematics by the first word of [KINS]KINEMATICS.
 messages::Kinematics MachineConfig::kinematics_kind() const {
     bool identity = isTrivial;
     for (const std::string &word : kinematics) {

@@ -16,7 +16,7 @@ struct LoadedConfig {
         : ini(std::move(file)), reader(ini, sink), machine(read_machine_config(reader)) {
         machine.task.confinement = read_confinement(ini, machine.task.parameter_file);
     }
-    /// Null when the file cannot be read or has errors; the sink has them.
+    /// Null when the file cannot be read or has errors; the errors are in the sink.
     static std::unique_ptr<LoadedConfig> load(const std::string &path, diagnostics::Sink &sink);
 
     ini::IniFile ini;

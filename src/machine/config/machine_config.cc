@@ -56,7 +56,7 @@ void read_coordinates(IniReader &ini, MachineConfig &machine) {
     }
 }
 
-/// [TRAJ]HOME: a number for each of COORDINATES.
+/// Reads [TRAJ]HOME: a number for each letter of COORDINATES.
 void read_first_place(IniReader &ini, MachineConfig &machine) {
     const ini::IniKey &key = ini_key("TRAJ", "HOME");
     const std::vector<std::string> words = split_words(ini.text(key));
@@ -119,7 +119,7 @@ void read_kinematics(IniReader &ini, MachineConfig &machine) {
     }
 }
 
-/// A setting of the motion controller from its INI key, if the key is set or has no other source.
+/// Reads a setting of the motion controller from its INI key, if the key is set or has no other source.
 void read_parameter(IniReader &ini, const std::string &section, const IniKey &key,
                     motion::SetParameter parameter, MachineConfig &machine) {
     if (key.kind != IniKind::CHOICE && ini.find(key, section) == nullptr) {
@@ -177,7 +177,7 @@ void check_travel(IniReader &ini, const std::string &section, const TravelKeys &
     }
 }
 
-/// A joint section above the last joint has a wrong number, so a missing section is an error.
+/// True if there is a section above the last joint. Its number is wrong, so a missing section is an error.
 bool hasJointBeyond(const IniReader &ini, int num_joints) {
     for (const std::string &section : ini.file().sections()) {
         const auto number = section.starts_with("JOINT_") ? parse_int(section.substr(6)) : std::nullopt;
@@ -197,7 +197,7 @@ void miss_joint(IniReader &ini, const std::string &section, int num_joints) {
     }
 }
 
-/// A speed or acceleration that the joint needs to move.
+/// Checks a speed or acceleration that the joint needs to move.
 void check_rate(IniReader &ini, const std::string &section, const IniKey &key) {
     if (!ini.file().hasSection(section)) {
         return;
@@ -211,7 +211,7 @@ void check_rate(IniReader &ini, const std::string &section, const IniKey &key) {
     }
 }
 
-/// The table of a joint's screw errors, if the file names one.
+/// Reads the table of a joint's screw errors, if the file names one.
 void read_compensation(IniReader &ini, const std::string &section, int joint, MachineConfig &machine) {
     const std::string name = ini.text(ini_key("JOINT_*", "COMP_FILE"), section);
     const std::int64_t type = ini.integer(ini_key("JOINT_*", "COMP_FILE_TYPE"), section);
@@ -263,7 +263,7 @@ void limit_angular(IniReader &ini, int axis, MachineConfig &machine) {
           limits.path.acceleration);
 }
 
-/// A wrapped axis rotates without limit in programs, so a limit stops it sooner or later.
+/// Reports a limit of a wrapped axis, because the axis rotates without limit in programs and would reach it.
 void check_wrapped(IniReader &ini, const std::string &section, int axis, const TravelKeys &travel) {
     const IniKey &key = gcode::ini_key("AXIS_*", "WRAPPED_ROTARY");
     if (!ini.boolean(key, section)) {
@@ -284,7 +284,7 @@ void check_wrapped(IniReader &ini, const std::string &section, int axis, const T
     }
 }
 
-/// Bits of unlock_joints_mask= of motmod, from the HAL files' loadrt line.
+/// Bits of unlock_joints_mask= of motmod, from the loadrt line in the HAL files.
 std::uint32_t unlock_mask(const IniReader &ini) {
     const ini::IniEntry *entry = ini.find(ini_key("EMCMOT", "EMCMOT"));
     for (const std::string &word : split_words(entry != nullptr ? entry->value : std::string())) {
@@ -353,7 +353,7 @@ void read_axes(IniReader &ini, MachineConfig &machine) {
     }
 }
 
-/// A number is the number of units per millimetre.
+/// A number of [TRAJ]LINEAR_UNITS is the number of units per millimetre.
 bool read_isMetric(IniReader &ini) {
     const IniKey &key = ini_key("TRAJ", "LINEAR_UNITS");
     const ini::IniEntry *entry = ini.find(key);
@@ -387,7 +387,7 @@ void read_trajectory(IniReader &ini, MachineConfig &machine) {
 void read_periods(IniReader &ini, MachineConfig &machine) {
     machine.servo_period_ns = ini.integer(ini_key("EMCMOT", "SERVO_PERIOD"));
     const double cycle_s = ini.real(ini_key("TASK", "CYCLE_TIME"));
-    // A slow task cycle must not be taken for a hang.
+    // The minimum prevents that a slow task cycle is treated as a hang.
     machine.task.watchdog_s = std::max(0.5, 10.0 * cycle_s);
     machine.task_period_ns = to_ns(cycle_s);
     machine.task.mdi_queued_commands = static_cast<int>(ini.integer(ini_key("TASK", "MDI_QUEUED_COMMANDS")));

@@ -32,7 +32,7 @@ struct PanelConfig {
 
 struct MachineConfig {
     std::string name;
-    std::string coordinates;  ///< upper case letters in the order of the file, "XYZ", "XYYZ"
+    std::string coordinates;  ///< upper case letters in the order of the file: "XYZ", "XYYZ"
     unsigned axis_mask = 0;
     int num_joints = 0;
     int num_spindles = 1;
@@ -40,16 +40,16 @@ struct MachineConfig {
     std::vector<std::string> kinematics;  ///< module and its arguments
     std::int64_t servo_period_ns = 1000000;
     std::int64_t task_period_ns = 1000000;
-    HalStep homing_module;   ///< a user's module with its parameters; empty: ours
-    HalStep planner_module;  ///< the same
+    HalStep homing_module;   ///< a user's module with its parameters; empty: Millwright's module
+    HalStep planner_module;  ///< a user's module with its parameters; empty: Millwright's module
     std::vector<HalStep> hal_steps;
-    std::string two_pass;  ///< [HAL]TWOPASS: not empty when files are read twice
+    std::string two_pass;  ///< [HAL]TWOPASS; not empty if the files are read twice
     bool has_halui = false;
     PanelConfig panel;
-    std::string shutdown_file;              ///< a HAL file for the shutdown, not run here
-    std::vector<std::string> applications;  ///< additional programs, not started here
+    std::string shutdown_file;              ///< HAL file for the shutdown, which this process does not run
+    std::vector<std::string> applications;  ///< additional programs, which this process does not start
     double applications_delay_s = 0;
-    std::string display;  ///< the display program, not started here
+    std::string display;  ///< the display program, which this process does not start
     std::string tool_table_file;
     std::string tool_database;  ///< the tool database program with its arguments; empty: the tool table file
     std::string ini_folder;
@@ -58,22 +58,23 @@ struct MachineConfig {
     task::Settings task;
     /// All settings of the motion controller that the INI file sets or that have a documented default.
     std::vector<motion::SetParameter> parameters;
-    /// For each joint that has one ([JOINT_n]COMP_FILE).
+    /// Screw error table of each joint that has one ([JOINT_n]COMP_FILE).
     std::vector<std::vector<motion::LoadCompensation>> screw_tables;
-    /// The axis of each joint by the letters of the file: limits of a joint apply to its axis if `trivial`.
+    /// The axis of each joint by the letters of the file. Limits of a joint apply to its axis if the
+    /// kinematics is trivial.
     motion::AxisMap axis_map;
-    bool isTrivial = false;  ///< joints are axes
-    /// The joint that moves each axis first (trivial kinematics), -1 for none.
+    bool isTrivial = false;  ///< the kinematics is trivial
+    /// The first joint that moves each axis (trivial kinematics), -1: none.
     std::array<int, MAX_AXES> joint_of_axis{};
 
     /// Limits of the homed machine, for checks without motion.
     motion::FoldedLimits limits() const;
-    /// As reported by the module: trivkins is known.
+    /// Type as reported by the module; trivkins is known without loading.
     messages::Kinematics kinematics_kind() const;
 };
 
-/// Reads all known sections. Problems go to the reader's sink; the result is usable only when the sink has no
-/// errors afterwards. Unknown keys are not reported here: HAL files may still refer to them.
+/// Reads all known sections. Problems go to the reader's sink; the result may be used only if the sink has no
+/// errors. Unknown keys are not reported here, because HAL files may still use them.
 MachineConfig read_machine_config(ini::IniReader &reader);
 
 }  // namespace mw::machine

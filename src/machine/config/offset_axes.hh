@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Axes that may have external offsets, by the kinematics that the INI file names.
+// Axes that may have external offsets, by the kinematics in the INI file.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace mw::machine {
 
-/// As reported by the module after loading; matrixkins: with the initial values of its pins.
+/// Linear joints as reported by the module after loading; for matrixkins with the initial values of its pins.
 kinematics::LinearJoints linear_joints(const std::vector<std::string> &kinematics);
 
-/// Reports an axis that cannot have an external offset, and removes its ratio, so that it keeps its full
-/// speed.
+/// Reports an axis that cannot have an external offset, and removes its ratio, so that the axis keeps its
+/// full speed.
 void check_offset(ini::IniReader &ini, const std::string &section, int axis, MachineConfig &machine);
 
 }  // namespace mw::machine

@@ -34,7 +34,7 @@ struct Limits {
     }
 };
 
-/// Two limits of one direction contradict each other: the narrower one is safe.
+/// If two limits of one direction contradict each other, the narrower limit is used, because it is safe.
 template <class Narrower>
 void read_limit(ini::IniReader &ini, Limits limits, const IniKey &both, Parameter forward, Parameter reverse,
                 Narrower narrower) {

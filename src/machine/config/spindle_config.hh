@@ -10,7 +10,7 @@
 namespace mw::machine {
 
 /// Reads [SPINDLE_n]MIN_VELOCITY and MAX_VELOCITY, which apply in addition to the limits per direction.
-/// Without limits for M4 those of M3 apply. Call it after reading the settings per direction.
+/// Without limits for M4 the limits of M3 apply. Call it after reading the settings per direction.
 void read_spindle_limits(ini::IniReader &ini, int spindle, MachineConfig &machine);
 
 }  // namespace mw::machine

@@ -8,15 +8,15 @@
 
 namespace mw::machine {
 
-/// Every function of a remap exists and does nothing; `asked` is called for each function that would have
-/// run.
+/// Every function of a remap exists and does nothing; `asked` is called for each function call that was
+/// skipped.
 class UnscriptedHost final : public gcode::ScriptHost {
   public:
     explicit UnscriptedHost(std::function<void()> asked) : asked_(std::move(asked)) {}
 
     Result<> load(const gcode::ScriptSettings &, gcode::InterpreterView &) override { return {}; }
     Result<> begin() override { return {}; }
-    /// It is unknown whether a script or a file implements an O word: assumes a file.
+    /// Assumes a file, because it is unknown whether a script or a file implements an O word.
     bool hasFunction(gcode::ScriptModule module, std::string_view) const override {
         return module == gcode::ScriptModule::REMAP;
     }
@@ -36,7 +36,7 @@ class UnscriptedHost final : public gcode::ScriptHost {
     std::function<void()> asked_;
 };
 
-/// Returns 0 for HAL values and calls `asked` for each: they are known only while the machine runs.
+/// Returns 0 for HAL values and calls `asked` for each, because they are known only while the machine runs.
 class UnknownHalValues final : public gcode::ParameterSource {
   public:
     UnknownHalValues(gcode::ParameterSource &values, std::function<void()> asked)

@@ -7,7 +7,7 @@
 namespace mw::halui {
 
 std::optional<double> Dial::step(const DialInputs &now, double value, const DialRange &range) {
-    // Counts of a wheel that is not enabled are ignored.
+    // Ignores counts of a wheel that is not enabled.
     const double turned = known_ ? static_cast<double>(now.counts) - counts_ : 0.0;
     known_ = true;
     counts_ = now.counts;

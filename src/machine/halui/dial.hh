@@ -15,10 +15,11 @@ struct DialRange {
 
 class Dial {
   public:
-    /// Once a cycle: the new requested value, within the range; nothing without input. `value` is the current
-    /// value.
+    /// Called once in each cycle. Returns the new requested value, within the range; nothing without input.
+    /// `value` is the current value.
     std::optional<double> step(const DialInputs &now, double value, const DialRange &range);
-    /// The request has been applied or rejected: the next change starts at the current value.
+    /// Called when the request has been applied or rejected. The next change then starts at the current
+    /// value.
     void settle() { asked_.reset(); }
 
   private:

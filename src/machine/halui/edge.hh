@@ -4,10 +4,10 @@
 
 namespace mw::halui {
 
-/// TRUE at the start is not an edge.
+/// Detects rising edges. TRUE at the start is not an edge.
 class Edge {
   public:
-    /// True if it has risen since the last call.
+    /// True if the input has risen since the last call.
     bool step(bool on) {
         const bool risen = known_ && on && !was_on_;
         was_on_ = on;

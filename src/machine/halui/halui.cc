@@ -165,7 +165,7 @@ void Halui::step_buttons() {
         if (isStop(command)) {
             mdi_.drop();
         }
-        // A command that task has no space for is tried again in the next cycle.
+        // If task has no space for a command, it is posted again in the next cycle.
         const auto posted = client_->post(command);
         button.wasOn = posted.has_value();
         if (posted.has_value()) {
@@ -258,7 +258,7 @@ void Halui::step_spindle(int number) {
     }
     const bool faster = one.edges[3].step(in.is_increase), slower = one.edges[4].step(in.is_decrease);
     if ((faster || slower) && turning_rpm == 0) {
-        rejected_ = true;  // a stopped spindle: changing its speed does not start it
+        rejected_ = true;  // the spindle is stopped, and a change of its speed does not start it
         ++refusals_;
     } else if (faster != slower) {
         const double rpm = turning_rpm + (faster ? STEP_RPM : -STEP_RPM);

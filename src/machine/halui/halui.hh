@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The operator as HAL pins (man page halui), as machine/halui/pin_tables.hh has them: buttons, wheels, jogs,
-// lamps.
+// The operator interface as HAL pins (man page halui), declared in machine/halui/pin_tables.hh: buttons,
+// wheels, jogs, lamps.
 #pragma once
 
 #include <array>
@@ -37,9 +37,9 @@ class Halui {
     Result<> create(hal::Instance &hal, const HaluiSettings &settings);
     void destroy();
 
-    /// Joins as a panel, which works independently of the right to operate of other clients.
+    /// Joins as a panel, which is independent of the right to operate of other clients.
     Result<> join(mailbox::Segment &mailbox);
-    /// Converts edges to commands and states to pins. Once a task cycle, after task's step.
+    /// Converts edges to commands and states to pins. Called once in each task cycle, after task's step.
     void step();
 
   private:
@@ -85,7 +85,7 @@ class Halui {
     std::vector<hal::UserPinSet<pins::MDI_BUTTONS>> mdi_buttons_;
     MdiPins mdi_;
     double tool_diameter_ = 0;
-    std::vector<client::Serial> pending_;  ///< commands whose outcome is pending
+    std::vector<client::Serial> pending_;  ///< commands without an outcome yet
     bool rejected_ = false;
     std::uint32_t refusals_ = 0;
 };

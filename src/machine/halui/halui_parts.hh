@@ -13,7 +13,7 @@
 
 namespace mw::halui {
 
-/// An input pin for one command; `number` is its instance, or SELECTED.
+/// An input pin for one command. `number` is its instance, or SELECTED.
 struct HaluiButton {
     hal::UserPin<bool> pin;
     messages::Command (*make)(int number) = nullptr;

@@ -11,20 +11,21 @@
 
 namespace mw::halui {
 
-/// A jog continues while its pin is TRUE, by renewing its lease. A jog that was stopped otherwise starts
-/// again only after the pin has been released.
+/// A jog continues while its pin is TRUE, by renewing its lease. If the jog was stopped for another reason,
+/// it starts again only after the pin has been released.
 class JogPins {
   public:
     struct Target {
         bool isJoint = true;
         int index = 0;
     };
-    /// Once a cycle; returns the commands. Selecting another target ends the previous jog, and starts its own
-    /// while the pins are TRUE, unless the previous jog was stopped otherwise.
+    /// Called once in each cycle; returns the commands. Selecting another target ends the previous jog and
+    /// starts a jog of the new target while the pins are TRUE, unless the previous jog was stopped for
+    /// another reason.
     std::vector<messages::Command> step(const JogInputs &now, const JogSettings &settings,
                                         const Target &target, std::int64_t now_ns);
 
-    /// Task has rejected the jog or its renewal.
+    /// Called when task has rejected the jog or its renewal.
     void note_refusal() { rejected_ = true; }
 
   private:
@@ -35,7 +36,7 @@ class JogPins {
 
     Target target_;
     double part_ = 0;        ///< fraction of the jog speed of the current jog
-    bool waiting_ = false;   ///< until all pins are released
+    bool waiting_ = false;   ///< no jog until all pins are released
     bool rejected_ = false;  ///< the jog was rejected
     bool known_ = false;
     std::int64_t renewed_ns_ = 0;

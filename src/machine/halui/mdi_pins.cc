@@ -40,7 +40,7 @@ void MdiPins::step(const std::vector<bool> &on, client::Client &client, const As
     }
 }
 
-/// If the mode was rejected, no line is run.
+/// If the mode was rejected, the line is not run.
 bool MdiPins::isModeSet(client::Client &client) {
     if (mode_order_ == 0) {
         return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines of the INI file on buttons: to MDI mode, the line, and back to the mode before.
+// Buttons for lines of the INI file. Each switches to MDI mode, runs the line and restores the mode.
 #pragma once
 
 #include <deque>
@@ -20,9 +20,9 @@ class MdiPins {
     explicit MdiPins(std::vector<std::string> lines = {})
         : lines_(std::move(lines)), buttons_(lines_.size()) {}
     std::size_t count() const { return lines_.size(); }
-    /// Once a cycle, with the state of each line's pin.
+    /// Called once in each cycle, with the state of each line's pin.
     void step(const std::vector<bool> &on, client::Client &client, const Ask &ask);
-    /// After an abort: lines that wait for the mode are not run.
+    /// Called after an abort: lines that wait for the mode are not run.
     void drop() { waiting_.clear(); }
 
   private:
@@ -31,7 +31,7 @@ class MdiPins {
 
     std::vector<std::string> lines_;
     std::vector<Edge> buttons_;
-    std::deque<std::size_t> waiting_;      ///< pressed, not posted yet
+    std::deque<std::size_t> waiting_;      ///< pressed and not posted yet
     std::vector<client::Serial> running_;  ///< posted
     client::Serial mode_order_ = 0;
     bool active_ = false;

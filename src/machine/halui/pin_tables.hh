@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every pin of halui, declared once: what is made in HAL, which command a button is, what an input is read
-// into, what an output shows, and the pins of halui(1) follow from here.
+// All pins of halui, declared once. The tables generate the pins in HAL, the commands of buttons, the reading
+// of inputs, the writing of outputs, and the list of pins in halui(1).
 #pragma once
 
 #include "hal/sdk/pin_table.hh"
@@ -15,7 +15,7 @@ struct Shown {
     int joint = 0, axis = 0;  ///< selected
     double tool_diameter = 0;
     double units_per_mm = 1;
-    bool isRefused = false;  ///< the last command did not succeed
+    bool isRefused = false;  ///< the last command has failed
     std::uint32_t refusals = 0;
 };
 struct JointShown {
@@ -35,7 +35,7 @@ struct JogInputs {
     double increment = 0;
     double analog = 0;
 };
-/// For all joints, or all axes.
+/// Settings for all joints, or all axes.
 struct JogSettings {
     double speed_per_min = 0;
     double deadband = 0;
@@ -62,13 +62,13 @@ namespace mw::halui::pins {
 using sdk::in, sdk::out, sdk::pin_table;
 using namespace messages;
 
-/// An input that posts a command on its rising edge: `command(number)` makes it.
+/// An input that posts a command on its rising edge; `command(number)` creates it.
 template <class Make>
 constexpr auto button(const char *name, const char *doc, Make command) {
     return sdk::PinRow<bool, HAL_IN, Make, sdk::Unused>{name, "", doc, command, {}};
 }
 
-/// Lamps that show rows of messages/legacy/status_table.hh.
+/// Outputs that show rows of messages/legacy/status_table.hh.
 template <legacy::RowName NAME>
 struct Value {
     auto operator()(const Shown &s) const { return legacy::value<legacy::STATUS, NAME>(s.status); }

@@ -54,7 +54,7 @@ void DiscreteIo::step_abort(const Inputs &inputs) {
 ToolEvent DiscreteIo::end_by_fault() {
     const bool continuing = protocol_.is_version2 && fault_reason_ > 0;
     abort(REASON_CHANGER_FAULT);
-    abandoned_ = false;  // the changer reports that nothing is changed
+    abandoned_ = false;  // the changer reports that no change is under way
     return continuing ? ToolEvent::FAULT_TOLD : ToolEvent::FAULT;
 }
 
@@ -76,7 +76,7 @@ ToolEvent DiscreteIo::step_handshake(const Inputs &inputs) {
     bool &request = preparing ? outputs.tool_prepare : outputs.tool_change;
     const bool answered = preparing ? inputs.tool_prepared : inputs.tool_changed;
     if (!request) {
-        // A pending answer belongs to the previous handshake.
+        // A pending answer belongs to the previous handshake, so the request waits for its end.
         request = !answered;
         return ToolEvent::NONE;
     }
@@ -88,7 +88,8 @@ ToolEvent DiscreteIo::step_handshake(const Inputs &inputs) {
     return preparing ? ToolEvent::PREPARED : ToolEvent::CHANGED;
 }
 
-/// The changer completed the change after it was aborted: the operator must enter the loaded tool.
+/// True if the changer completed the change after it was aborted. The operator must then enter the loaded
+/// tool.
 bool DiscreteIo::isLate(const Inputs &inputs) {
     return abandoned_ && inputs.tool_changed && std::exchange(abandoned_, false);
 }

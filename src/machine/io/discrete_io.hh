@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The discrete I/O controller (requirement E1): e-stop chain, coolant, lube, tool prepare and change
-// handshakes. Pure: inputs in, outputs out. Pins: machine/io/pins.hh.
+// The discrete I/O controller (requirement E1): e-stop chain, coolant, lubrication, handshakes for tool
+// prepare and tool change. It has no side effects: it calculates outputs from inputs. Pins:
+// machine/io/pins.hh.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,7 @@ struct Outputs {
     bool tool_prepare = false, tool_change = false;
     bool emc_abort = false, start_change = false;
     bool toolchanger_fault_ack = false, toolchanger_faulted = false;
-    int emc_reason = 0;  ///< why a request to the changer is aborted
+    int emc_reason = 0;  ///< reason for aborting a request to the changer
     int tool_prep_number = 0, tool_prep_pocket = 0, tool_prep_index = 0;
     int tool_number = 0, tool_from_pocket = 0;
     int state = 0;
@@ -41,22 +42,22 @@ struct Outputs {
 
 /// Protocol of the changer ([EMCIO]EMCIO: io, or iov2 and its option).
 struct Protocol {
-    /// Aborts are acknowledged by emc-abort-ack, a fault persists until it is cleared, and a reason above 0
-    /// lets the program continue.
+    /// Aborts are acknowledged by emc-abort-ack, a fault remains until it is cleared, and after a fault with
+    /// a reason above 0 the program continues.
     bool is_version2 = false;
-    bool has_start_change = false;  ///< start-change is raised and acknowledged before tool-change
+    bool has_start_change = false;  ///< start-change is set and acknowledged before tool-change
 };
 
 enum class ToolAction : std::uint8_t { IDLE, PREPARING, STARTING, CHANGING, ABORTING };
 
-/// Meaning of a finished handshake for the tool table.
+/// Effect of a finished handshake on the tool table.
 enum class ToolEvent : std::uint8_t {
     NONE,
     PREPARED,
     CHANGED,
-    FAULT,         ///< the program must not continue
-    FAULT_TOLD,    ///< nothing has changed; the program continues and can read #5600
-    CHANGED_LATE,  ///< tool-changed has arrived after the change was aborted
+    FAULT,         ///< fault; the program must not continue
+    FAULT_TOLD,    ///< fault without a change; the program continues and can read #5600
+    CHANGED_LATE,  ///< tool-changed arrived after the change was aborted
 };
 
 /// EMC_ABORT_BY_TOOLCHANGER_FAULT
@@ -67,13 +68,13 @@ class DiscreteIo {
     explicit DiscreteIo(const Protocol &protocol = {}) : protocol_(protocol) {}
     Outputs outputs{};
 
-    /// One cycle: reads the inputs and advances the handshakes. Returns the event that has just occurred.
+    /// Runs one cycle: reads the inputs and advances the handshakes. Returns the event of this cycle.
     ToolEvent step(const Inputs &inputs);
 
     /// Opens the e-stop chain on this side: user-enable-out false, lube off.
     void enter_estop();
-    /// Closes this side of the chain: user-enable-out true and one pulse of user-request-enable; lube on when
-    /// the chain is closed.
+    /// Closes this side of the chain: user-enable-out true and one pulse of user-request-enable; lubrication
+    /// on when the chain is closed.
     void leave_estop();
     bool isChainClosed() const { return chain_closed_; }
     bool isEstopRequested() const { return !outputs.user_enable_out; }
@@ -82,10 +83,10 @@ class DiscreteIo {
     void start_prepare(int number, int pocket, int index);
     /// Starts tool-change to the prepared tool.
     void start_change();
-    /// The prepared tool has been loaded: none is prepared any more.
+    /// Called when the prepared tool has been loaded; no tool is prepared then.
     void clear_prepared();
-    /// Ends any handshake at once: requests drop; emc-abort rises for one cycle, in version 2 until it is
-    /// acknowledged.
+    /// Ends any handshake at once: requests are reset. emc-abort is set for one cycle, in version 2 until it
+    /// is acknowledged.
     void abort(int reason);
     ToolAction action() const { return action_; }
     /// The pin for which a handshake waits.
@@ -114,7 +115,7 @@ class DiscreteIo {
     bool chain_closed_ = false;
     bool request_pulse_due_ = false;
     bool abort_pulse_due_ = false;
-    bool lube_due_ = false;  ///< as soon as the chain is closed
+    bool lube_due_ = false;  ///< lubrication is switched on when the chain is closed
     bool has_oil_ = true;
     bool abandoned_ = false;  ///< a change was aborted before its answer
     int fault_reason_ = 0;

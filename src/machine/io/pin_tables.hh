@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every pin of the I/O controller, declared once: what is made in HAL, what is copied each task cycle, and
-// the pins of iocontrol(1) follow from here.
+// All pins of the I/O controller, declared once. The tables generate the pins in HAL, the transfer in each
+// task cycle, and the list of pins in iocontrol(1).
 #pragma once
 
 #include "hal/sdk/pin_table.hh"
@@ -8,11 +8,11 @@
 
 namespace mw::io {
 
-/// What rows read into.
+/// Destination of the rows that read.
 struct PinInputs {
     Inputs in;
 };
-/// What rows write from.
+/// Source of the rows that write.
 struct PinOutputs {
     const Outputs &out;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The HAL pins of the I/O controller: component "iocontrol", pins iocontrol.0.* (requirement E1, man page
-// iocontrol), as machine/io/pin_tables.hh has them.
+// iocontrol), declared in machine/io/pin_tables.hh.
 #pragma once
 
 #include "base/result.hh"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tool offset on its path from the I/O controller (task process) to its pins (realtime process). Shared
-// memory; holds no pointers.
+// Shared memory that transfers the tool offset from the I/O controller (task process) to its pins (realtime
+// process). It contains no pointers.
 #pragma once
 
 #include <atomic>
@@ -12,13 +12,13 @@
 namespace mw::io {
 
 struct NumberedOffset {
-    std::uint32_t number = 0;  ///< number of the value; 0: none yet
+    std::uint32_t number = 0;  ///< number of the value; 0: no value yet
     geometry::Pose offset;     ///< [machine units]
 };
 
 struct ToolOffsetBlock {
     static constexpr std::uint32_t MAGIC = 0x4d57544f;  // "MWTO"
-    static constexpr int SHMEM_KEY = 0x4d570400;        ///< for rtapi_shmem_new
+    static constexpr int SHMEM_KEY = 0x4d570400;        ///< key for rtapi_shmem_new
     std::uint32_t magic = 0;
     std::uint32_t layout_bytes = 0;  ///< sizeof(ToolOffsetBlock) of the creator
 

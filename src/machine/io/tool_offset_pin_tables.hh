@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The pins of the I/O controller in the realtime process; machine/io/pin_tables.hh has those of the task
-// process.
+// The pins of the I/O controller in the realtime process. The pins in the task process are in
+// machine/io/pin_tables.hh.
 #pragma once
 
 #include "hal/sdk/pin_table.hh"

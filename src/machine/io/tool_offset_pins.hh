@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The pins motion.tooloffset.*: the realtime part of the I/O controller. They belong to the realtime process,
-// so that they keep their value while a machine stops whose task process is dead.
+// so that they keep their values while the machine stops after the death of the task process.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class ToolOffsetPins {
 
   private:
     NumberedOffset current_;
-    const std::uint32_t *links_ = nullptr;  ///< counter of HAL: changes with the links of pins
+    const std::uint32_t *links_ = nullptr;  ///< counter of HAL that changes when pins are linked
     std::uint32_t last_links_ = 0;
     std::uint32_t last_version_ = 0;  ///< version of the block
     sdk::PinSet<pins::TOOL_OFFSET> pins_[MAX_AXES];

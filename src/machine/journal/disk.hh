@@ -26,17 +26,17 @@ class Disk {
     virtual Result<> remove(const std::string &path) = 0;
     /// Makes the names in the folder of a file durable.
     virtual Result<> sync_folder_of(const std::string &path) = 0;
-    /// Replaces the content atomically; a link is kept.
+    /// Replaces the content atomically. A symbolic link is kept.
     virtual Result<> rewrite(const std::string &path, std::string_view bytes);
 };
 
 /// Treatment of the old content of a file.
 enum class Old : std::uint8_t {
     DROPPED,
-    BACKED_UP,  ///< is copied to the file's name with .bak
+    BACKED_UP,  ///< is copied to a file with the extension .bak
 };
 
-/// Of this computer.
+/// The disk of this computer.
 std::unique_ptr<Disk> system_disk();
 
 /// Replaces the content atomically.

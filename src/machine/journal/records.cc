@@ -10,7 +10,7 @@ namespace {
 
 /// The last byte is the version of the format.
 constexpr std::string_view MAGIC = "MWJRNL\n\x01";
-/// A longer record is not valid: its length is torn.
+/// A longer record is not valid, because its length was only partly written.
 constexpr std::uint32_t MOST_BYTES = 64U << 20U;
 
 enum class Kind : std::uint8_t { START, PROGRESS, DOUBT, END };
@@ -84,7 +84,7 @@ std::string packed(std::uint64_t key, Kind kind, const T &value) {
     return frame(key, kind, out.bytes());
 }
 
-/// The next complete record; nothing at the end and before a torn one.
+/// The next complete record; nothing at the end and before an incomplete record.
 std::optional<std::string_view> next_record(std::string_view &rest, std::uint64_t key) {
     constexpr std::size_t HEAD = sizeof(std::uint32_t) + sizeof(std::uint64_t);
     std::uint32_t size = 0;
@@ -110,12 +110,12 @@ bool unpack(std::string_view body, T &value) {
     return in.isComplete();
 }
 
-/// False when this version does not write such records.
+/// Reads a record. False if this version does not write such records.
 bool take(std::string_view body, Run &run) {
     Progress progress;
     Doubt doubt;
     switch (static_cast<Kind>(body[0])) {
-    case Kind::START: return false;  // only at the beginning
+    case Kind::START: return false;  // allowed only at the beginning
     case Kind::PROGRESS:
         if (!unpack(body, progress)) {
             return false;

@@ -121,7 +121,7 @@ void Writer::finish() {
     if (core_->end_thread(LONGEST_END)) {
         thread_.join();
     } else {
-        thread_.detach();  // it shares the core
+        thread_.detach();  // the thread shares the core
     }
     for (const std::string &reason : core_->unwritten()) {
         std::fputs((reason + '\n').c_str(), stderr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stores the data that must survive a power cut: the journal of the running program, and small files that
-// change while it runs. A separate thread uses the disk.
+// Stores data that must survive a power cut: the journal of the running program, and small files that change
+// while it runs. A separate thread accesses the disk.
 #pragma once
 
 #include <cstdint>
@@ -18,17 +18,17 @@ namespace mw::journal {
 /// State on disk when the machine started.
 struct Found {
     std::optional<Run> run;  ///< a run that has not ended
-    std::string refusal;     ///< why it cannot be continued; empty: no reason is known
+    std::string refusal;     ///< reason why the run cannot be continued; empty: no reason is known
 };
 
 enum class Works : std::uint8_t {
     ALONE,    ///< in a separate thread
-    ON_CALL,  ///< in work(): for virtual clocks
+    ON_CALL,  ///< in work(), for virtual clocks
 };
 
 /// Executes jobs in the order of the calls, and syncs each part before the next. A new progress replaces a
-/// waiting one; a new text of a file replaces its waiting text. One thread calls the methods. Only methods
-/// whose comment mentions it wait for the disk.
+/// waiting one; a new text of a file replaces its waiting text. One thread calls the methods. A method waits
+/// for the disk only if its comment says so.
 class Writer {
   public:
     /// `path` of the journal; empty: runs are not journalled.
@@ -50,28 +50,28 @@ class Writer {
     /// The run will not be continued: removes the journal.
     void forget();
 
-    /// A text that cannot be written is kept, and written again with the next text of the file, before the
-    /// file is read, and in finish().
+    /// Replaces a file. A text that cannot be written is kept. It is written again with the next text of the
+    /// file, before the file is read, and in finish().
     void keep_file(const std::string &path, std::string text, Old old = Old::DROPPED);
-    /// Waits for the disk, at most 1 s, and not if take_delay() has found it late. When it returns without an
-    /// error the file has this text, and no earlier text replaces it. A disk that answers later still writes
-    /// it.
+    /// Waits for the disk, at most 1 s, and not if take_delay() has found it late. After success the file has
+    /// this text, and no earlier text replaces it. If the disk answers later, it still writes the text.
     Result<> write_file(const std::string &path, const std::string &text, Old old = Old::DROPPED);
-    /// Reads a file after its pending texts have been written; an error when that fails. `then` is called in
-    /// the thread of the disk.
+    /// Reads a file after its pending texts have been written; an error when writing fails. `then` is called
+    /// in the thread of the disk.
     using Then = std::function<void(Result<std::string>)>;
     void read_file(const std::string &path, Then then);
-    /// The file has its last text, or writing it has failed, or take_delay() has found the disk late.
+    /// True if the file has its last text, or writing has failed, or take_delay() has found the disk late.
     bool isSettled(const std::string &path) const;
 
-    /// Message for the operator, once.
+    /// Message for the operator; each message is returned once.
     std::optional<std::string> take_trouble();
-    /// The file for which the disk has not answered in 1 s, once. Call in each cycle at clock time `now_ns`.
+    /// The file for which the disk has not answered in 1 s; returned once. Call it in each cycle at clock
+    /// time `now_ns`.
     std::optional<std::string> take_delay(std::int64_t now_ns);
     /// With Works::ON_CALL: executes the jobs; false when there were none.
     bool work();
-    /// No calls are permitted afterwards. Waits for all jobs, at most 0.5 s with a thread; unwritten files
-    /// are then named on standard error.
+    /// No calls are permitted afterwards. Waits for all jobs, at most 0.5 s with a thread; then names
+    /// unwritten files on standard error.
     void finish();
 
   private:
@@ -79,7 +79,7 @@ class Writer {
     class Core;
 
     std::shared_ptr<Core>
-        core_;  ///< shared with the thread, which outlives this while its disk does not answer
+        core_;  ///< shared with the thread, which outlives this object while its disk does not answer
     std::thread thread_;
     bool finished_ = false;
 };

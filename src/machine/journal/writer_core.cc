@@ -15,7 +15,7 @@ namespace {
 
 /// Size of records after which a journal is replaced by a short one.
 constexpr std::uint64_t MOST_RECORD_BYTES = 1U << 20U;
-/// With a slower disk the journal lags behind the tool.
+/// Duration above which the disk is too slow, so that the journal lags behind the tool.
 constexpr double SLOW_S = 0.8;
 constexpr std::int64_t NS_PER_S = 1000000000;
 constexpr std::int64_t LATE_NS = NS_PER_S;
@@ -65,7 +65,7 @@ void Writer::Core::ask(Job job) {
     {
         const std::lock_guard lock(mutex_);
         job.number = ++last_job_;
-        if (job.kind == Job::Kind::BEGIN || job.kind == Job::Kind::FORGET) {  // earlier jobs do not matter
+        if (job.kind == Job::Kind::BEGIN || job.kind == Job::Kind::FORGET) {  // earlier jobs have no effect
             std::erase_if(jobs_, [](const Job &one) {
                 return one.kind != Job::Kind::FILE && one.kind != Job::Kind::READ;
             });
@@ -157,7 +157,7 @@ bool Writer::Core::work() {
     return !jobs.empty();
 }
 
-/// The last jobs have stored progress of the program.
+/// True if the last jobs have stored progress of the program.
 bool Writer::Core::isBehind() const {
     const std::lock_guard lock(mutex_);
     return isJournalled() && (hadProgress_ || std::ranges::any_of(jobs_, is_progress));
@@ -324,7 +324,7 @@ Result<> Writer::Core::write_records() {
     if (!file_sound_ || bytes_ + records_.size() > MOST_RECORD_BYTES) {
         return rewrite();
     }
-    // Records after a torn one are not found.
+    // Records after an incomplete record are not found.
     file_sound_ = false;
     bytes_ += records_.size();
     auto done = disk_->append(path_, records_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The data that a writer shares with its thread, and how its jobs are done.
+// The data that a writer shares with its thread, and the processing of its jobs.
 #pragma once
 
 #include <chrono>
@@ -16,22 +16,22 @@ namespace mw::journal {
 struct Writer::Job {
     enum class Kind : std::uint8_t { BEGIN, PROGRESS, DOUBT, END, FORGET, FILE, READ };
     Kind kind = Kind::END;
-    Run run{};  ///< for BEGIN; one field of it for PROGRESS and DOUBT
+    Run run{};  ///< for BEGIN; PROGRESS and DOUBT use one field of it
     std::string path{}, text{};
     Old old = Old::DROPPED;    ///< for FILE
-    bool awaited = false;      ///< for FILE: the caller receives the error
+    bool awaited = false;      ///< for FILE: the caller waits for the error
     Then then{};               ///< for READ
     std::uint64_t number = 0;  ///< number of the job
 };
 
-/// Its mutex is never locked while the disk is used. Either one thread or the caller runs work().
+/// The mutex is never locked during disk access. Either the thread or the caller runs work().
 class Writer::Core {
   public:
     Core(std::unique_ptr<Disk> disk_of_files, std::string journal_path)
         : disk_(std::move(disk_of_files)), path_(std::move(journal_path)) {}
 
     bool isJournalled() const { return !path_.empty(); }
-    /// Before the thread starts.
+    /// Called before the thread starts.
     void find();
     const Found &found() const { return found_; }
     void ask(Job job);
@@ -43,7 +43,7 @@ class Writer::Core {
     bool isSettled(const std::string &path) const;
     /// Result of the last write of the file.
     Result<> wait_for(const std::string &path, std::chrono::milliseconds longest);
-    /// True: the thread has executed all jobs and ended.
+    /// True when the thread has executed all jobs and ended.
     bool end_thread(std::chrono::milliseconds longest);
     /// Files whose last text is not on the disk, with the reasons.
     std::vector<std::string> unwritten() const;
@@ -75,10 +75,10 @@ class Writer::Core {
     mutable std::mutex mutex_;  ///< guards the members up to last_job_
     std::condition_variable asked_, done_;
     std::deque<std::string> troubles_;
-    std::uint64_t busy_job_ = 0;  ///< job that uses the disk; 0: none
+    std::uint64_t busy_job_ = 0;  ///< number of the job that uses the disk; 0: none
     std::string busy_path_;
     bool late_ = false;              ///< that job is late
-    std::uint64_t watched_job_ = 0;  ///< job watched by take_delay()
+    std::uint64_t watched_job_ = 0;  ///< number of the job watched by take_delay()
     std::int64_t watched_since_ns_ = 0;
     Jobs jobs_;
     std::map<std::string, FileState> files_;
@@ -89,11 +89,11 @@ class Writer::Core {
     std::unique_ptr<Disk> disk_;
     const std::string path_;             ///< path of the journal
     std::map<std::string, Job> failed_;  ///< files, by their paths
-    std::optional<Run> run_;             ///< content of the file
+    std::optional<Run> run_;             ///< content of the journal
     std::uint64_t key_ = 0;              ///< key of its records
     std::string records_;                ///< records to append
-    std::uint64_t bytes_ = 0;            ///< size of the file
-    bool file_sound_ = false;            ///< records may be appended to it
+    std::uint64_t bytes_ = 0;            ///< size of the journal
+    bool file_sound_ = false;            ///< records may be appended to the journal
     bool hadProgress_ = false;           ///< the last jobs included progress
     bool trouble_reported_ = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The HAL files of machines without hardware, and what is connected to simulated boards.
+// The HAL files of machines without hardware, and the devices connected to simulated boards.
 #include <algorithm>
 #include <cmath>
 
@@ -131,7 +131,7 @@ std::string simulated_motors_text(const Plan &plan) {
                                 std::abs(motor.steps_per_unit) * turn);
         }
         if (motor.home_pin.has_value()) {
-            // A reversed motor turns the other way to the switch.
+            // A reversed motor moves to the switch in the opposite direction.
             const double scale = servo ? motor.servo.counts_per_unit : motor.steps_per_unit;
             const double at = switch_position(plan, axis) / turn * (scale < 0 ? -1 : 1);
             switches += fmt::format("switch {} {} motor={} {}={}{}\n", *motor.home_pin, where, motor.name,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The HAL files of motion and tools, and the order in which everything is calculated.
+// The HAL files of motion and tools, and the order of the functions.
 #include <algorithm>
 
 #include <fmt/format.h>

@@ -116,7 +116,7 @@ std::string system_text(const Plan &plan) {
     return text;
 }
 
-/// Speeds along paths of rotary axes alone.
+/// Speeds along paths of only rotary axes.
 std::string angular_text(const Plan &plan) {
     double speed = 0, acceleration = 0;
     for (const Axis &axis : plan.axes) {
@@ -160,7 +160,7 @@ std::string whole_text(const Plan &plan) {
                        letters(plan, ""), is_gantry ? " kinstype=BOTH" : "", plan.joints());
 }
 
-/// Upper axes first, so that nothing obstructs sideways moves; motors of one axis together.
+/// Upper axes home first, so that nothing obstructs sideways moves; motors of one axis home together.
 int home_sequence(const Plan &plan, const Axis &axis) {
     const bool first = plan.kind == "lathe"  ? axis.letter == 'X'
                        : plan.kind == "foam" ? axis.letter == 'Y' || axis.letter == 'V'
@@ -171,8 +171,8 @@ int home_sequence(const Plan &plan, const Axis &axis) {
     return first ? 0 : 1;
 }
 
-/// Slow enough to move less than a third of a count in a servo period, so that homing repeats within one
-/// count.
+/// A speed at which the axis moves less than a third of a count in a servo period, so that homing repeats
+/// within one count.
 double latch_speed(const Axis &axis) {
     constexpr double PERIODS_PER_S = 1000, COUNTS = 0.3, SLOWER = 10, SLOWEST = 100;
     double speed = axis.home_speed / SLOWER;
@@ -244,7 +244,7 @@ std::string servo_text(const Plan &plan, const Axis &axis, const Motor &motor) {
 }
 
 std::string joint_text(const Plan &plan, const Axis &axis, const Motor &motor, int joint) {
-    // A servo axis lags behind by the speed divided by the gain until it is tuned.
+    // Until it is tuned, a servo axis lags behind by the speed divided by the gain.
     const double lag = plan.is_servo ? axis.speed / std::max(motor.servo.p, 1.0) * 1.5 : 0;
     std::string text = fmt::format(
         "# Motor {}\n"
@@ -273,7 +273,7 @@ std::string joint_text(const Plan &plan, const Axis &axis, const Motor &motor, i
 
 }  // namespace
 
-/// What moves the machine.
+/// The device that moves the machine.
 static const char *machine_text(const Plan &plan) {
     switch (plan.board) {
     case Board::PARPORT: return "stepper motors at a parallel port";

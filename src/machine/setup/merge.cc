@@ -9,7 +9,7 @@ namespace {
 
 using Lines = std::vector<std::string_view>;
 
-/// Lines with their ends.
+/// Splits a text into lines, each with its end.
 Lines lines_of(std::string_view text) {
     Lines lines;
     while (!text.empty()) {
@@ -23,7 +23,7 @@ Lines lines_of(std::string_view text) {
 
 constexpr std::size_t NONE = static_cast<std::size_t>(-1);
 
-/// For each line of `a`, the line of `b` that is the same one in a longest common subsequence, or NONE.
+/// For each line of `a`, the equal line of `b` in a longest common subsequence, or NONE.
 std::vector<std::size_t> matches(const Lines &a, const Lines &b) {
     const std::size_t rows = a.size(), columns = b.size(), width = columns + 1;
     std::vector<std::size_t> length((rows + 1) * width, 0);
@@ -77,7 +77,7 @@ class Merger {
     }
 
   private:
-    /// The lines up to the next line that all three have.
+    /// Processes the lines up to the next line that is in all three texts.
     void differing() {
         std::size_t base = base_;
         while (base < generated_.size() && (in_edited_[base] == NONE || in_wanted_[base] == NONE)) {

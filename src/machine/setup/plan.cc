@@ -142,7 +142,7 @@ void Reader::axes() {
                   .home_at_max = text(key + ".home") == "max",
                   .home_speed = number(key + ".home_speed"),
                   .motors = {}};
-        // The first program does not fit into shorter travels.
+        // The first program does not fit into a shorter travel.
         const double shortest = plan_.small(axis, 10);
         if (axis.max - axis.min < shortest) {
             fault(key + ".max", fmt::format("the travel is {}, and must be {} at least",
@@ -260,10 +260,10 @@ void Reader::wiring() {
     check_channels();
 }
 
-/// A step is high for at least one period and low for one.
+/// A step pulse is high for at least one period and low for at least one.
 void Reader::check_rates() {
     constexpr double NS_PER_S = 1e9;
-    // The generator must catch up with following errors at this factor of the axis speed.
+    // Factor of the axis speed at which the step generator can catch up with following errors.
     constexpr double MARGIN = 1.05;
     const double highest = NS_PER_S / (2.0 * plan_.wiring.base_period_ns);
     for (const Axis &axis : plan_.axes) {
@@ -346,7 +346,7 @@ void Reader::check_channels() {
         }
         used.emplace_back(channel, question.key);
     }
-    // The last step generator of a 7I76E makes the steps of the spindle.
+    // The last step generator of a 7I76E is for the spindle.
     constexpr int SPINDLE_CHANNEL = 4;
     if (plan_.board == Board::MESA_7I76E && text("spindle.drive") == "step" &&
         std::ranges::find(used, SPINDLE_CHANNEL, &std::pair<int, std::string>::first) != used.end()) {

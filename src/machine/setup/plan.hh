@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The plan of a machine: the parsed answers.
+// The plan of a machine, parsed from the answers.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,24 @@ namespace mw::setup {
 /// A terminal of the board; no value: not connected.
 using Terminal = std::optional<int>;
 
-/// Of a drive with a speed command and an encoder. Output and gains are in machine units per second.
+/// Data of a drive with a speed command and an encoder. Output and gains are in machine units per second.
 struct Servo {
     double counts_per_unit = 0;  ///< negative: the encoder is reversed
     double full_speed = 0;       ///< at 10 V [units/s]; negative: the command is reversed
     double p = 0, i = 0, d = 0, ff1 = 0, ff2 = 0;
 };
 
-/// Of one joint.
+/// Data of one joint.
 struct Motor {
     std::string name;  ///< "y2"
     double travel_per_turn = 0;
     double steps_per_unit = 0;
     Servo servo{};
     double backlash = 0;  ///< [units]
-    int channel = 0;      ///< of the board: step generator, or servo output with its encoder
+    int channel = 0;      ///< connector of the board: step generator, or servo output with its encoder
     int step_pin = 0, dir_pin = 0;
     Terminal home_pin{};
-    bool home_contact_closed = false;  ///< contact state of its switch when not actuated
+    bool home_contact_closed = false;  ///< the contact of its switch is closed when not actuated
 };
 
 struct Axis {
@@ -58,10 +58,10 @@ struct SpindleWiring {
     std::string vfd, device;
 };
 
-/// What is connected, and how steps are made.
+/// Connections of the board, and the generation of steps.
 struct Wiring {
-    std::string address;       ///< of the board
-    bool isSimulated = false;  ///< the board is
+    std::string address;       ///< address of the board
+    bool isSimulated = false;  ///< the board is simulated
     int step_length_ns = 0, step_space_ns = 0, dir_setup_ns = 0, dir_hold_ns = 0;
     int base_period_ns = 0;  ///< 0: no base thread
     Terminal enable_pin{}, flood_pin{}, mist_pin{}, estop_pin{}, probe_pin{}, torch_pin{}, arc_ok_pin{};
@@ -82,22 +82,22 @@ struct Plan {
     Wiring wiring;
 
     int joints() const;
-    double fastest() const;  ///< maximum of all linear axes [units/s]
+    double fastest() const;  ///< maximum speed of all linear axes [units/s]
     double millimetres(double mm) const { return metric ? mm : mm / 25.4; }
-    /// A length of this many mm for a linear axis, as many degrees for a rotary one.
+    /// A length of this many mm for a linear axis, or this many degrees for a rotary axis.
     double small(const Axis &axis, double mm) const { return axis.isRotary() ? mm : millimetres(mm); }
     bool hasBoard() const { return board != Board::NONE; }
     bool hasBaseThread() const { return wiring.base_period_ns > 0; }
 };
 
-/// Why an answer is not valid.
+/// The reason why an answer is not valid.
 struct Fault {
     std::string key, text;
 };
 
 struct Planned {
     Plan plan;
-    std::vector<Fault> faults;  ///< empty: the plan is valid
+    std::vector<Fault> faults;  ///< empty if the plan is valid
 };
 
 Planned plan_of(const Answers &given);

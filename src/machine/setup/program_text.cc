@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A first program and a tool table with the tool that it calls for.
+// A first program, and a tool table with the tool of that program.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ class Places {
     const Plan &plan_;
 };
 
-/// Rotary axes, one after the other, and back.
+/// Moves the rotary axes one after the other, and back.
 std::string rotary_moves(const Plan &plan, const Places &p) {
     std::string text;
     for (const Axis &axis : plan.axes) {

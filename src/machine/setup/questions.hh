@@ -17,13 +17,13 @@ enum class Form : std::uint8_t { CHOICE, NUMBER, WHOLE, TEXT };
 
 struct Question {
     std::string key;   ///< "x.max"
-    std::string text;  ///< for a person: English
+    std::string text;  ///< text for a person, in English
     Form form = Form::TEXT;
     std::string preset;
     std::vector<std::string> choices{};  ///< for CHOICE
     double low = 0, high = 0;            ///< for NUMBER and WHOLE
     std::string unit{};                  ///< "mm/s"; empty: none
-    std::string reason{};                ///< why the preset is a good start
+    std::string reason{};                ///< reason why the preset is a good initial value
 };
 
 inline constexpr std::string_view KINDS[] = {"mill", "router", "gantry", "lathe",
@@ -31,17 +31,17 @@ inline constexpr std::string_view KINDS[] = {"mill", "router", "gantry", "lathe"
 
 /// The axis letters of a machine type, in joint order: "XYZ"; empty for an unknown type.
 std::string_view axes_of(std::string_view kind);
-/// Its motors in joint order: "x", "y", "y2", "z".
+/// The motors of a machine type in joint order: "x", "y", "y2", "z".
 std::vector<std::string> motors_of(std::string_view kind);
 
-/// The questions, in this order, for the machine that `given` describes so far; invalid answers count as
-/// their presets. The answers `kind`, `units`, `drives`, `board`, `switches`, `spindle`, `spindle.drive` and
-/// those of transmissions determine the other questions.
+/// The questions, in this order, for the machine described by `given`; invalid answers count as their
+/// presets. The answers `kind`, `units`, `drives`, `board`, `switches`, `spindle`, `spindle.drive` and those
+/// of transmissions determine the other questions.
 std::vector<Question> questions(const Answers &given);
 
-/// What may be answered: ": 1 to 20 mm" or ": yes, no"; empty for any text.
+/// The accepted answers: ": 1 to 20 mm" or ": yes, no"; empty for any text.
 std::string range_of(const Question &question);
-/// An answer, or its preset. `key` must be that of a question.
+/// An answer, or its preset. `key` must be the key of a question.
 std::string answer_of(const std::vector<Question> &asked, const Answers &given, std::string_view key);
 
 }  // namespace mw::setup

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The commands that task accepts, and the names of its states, are those of the vocabulary.
+// The commands that task accepts and the names of its states are declared in messages/declarations.
 #pragma once
 
 #include "messages/declarations/command.hh"

@@ -13,7 +13,7 @@ namespace mw::task {
 /// The status that is published once a cycle.
 using Status = messages::MachineStatus;
 
-/// Why all work was stopped: the argument of [RS274NGC]ON_ABORT_COMMAND.
+/// The reason why all work was stopped: the argument of [RS274NGC]ON_ABORT_COMMAND.
 enum class AbortReason : std::uint8_t {
     EXECUTION_ERROR = 1,  ///< a move was rejected, or an action of the program failed
     ESTOP_CHAIN = 2,
@@ -21,8 +21,8 @@ enum class AbortReason : std::uint8_t {
     STATE_OFF = 4,
     STATE_ESTOP_RESET = 5,
     STATE_ESTOP = 6,
-    STATE_NOT_ON = 7,  ///< the machine was switched off by itself
-    ABORT = 8,         ///< by the operator
+    STATE_NOT_ON = 7,  ///< the machine switched itself off
+    ABORT = 8,         ///< aborted by the operator
     INTERPRETER_ERROR = 9,
     INTERPRETER_ERROR_MDI = 10,
 };

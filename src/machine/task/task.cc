@@ -82,7 +82,7 @@ void Task::take_motion_news() {
     const MotionLink::News news = port_.update();
     for (const motion::Fault &fault : news.faults) {
         motion::Fault told = fault;
-        told.source.line = run_.isProgram() ? fault.source.line : 0;  // a line of MDI has no number
+        told.source.line = run_.isProgram() ? fault.source.line : 0;  // an MDI line has no number
         end_.report(motion::fault_text(told), fault.source, !motion::isOnlyTold(fault.kind),
                     AbortReason::MOTION_FAULT);
     }
@@ -105,10 +105,10 @@ void Task::take_inputs() {
     sequencer_.sent().follow(port_.motion());
     runs_.check_files();
     sequencer_.on_tool_event(io_.step(io_pins_.read()));
-    resume_.watch_pause();  // a loaded tool is known before a command continues with it
+    resume_.watch_pause();  // a loaded tool is recorded before a command continues with it
 }
 
-/// Their work was aborted.
+/// Called when the work of the requests was aborted.
 void Task::abandon_requests() {
     resume_.forget_proposal();
     manual_.abort();
@@ -135,7 +135,7 @@ void Task::step_run() {
 
 void Task::write_outputs() {
     resume_.watch_pause();
-    // Calls that wait in the queue without a run are settings for displays; they move nothing.
+    // Calls that are queued without a run are settings for displays; they move nothing.
     planner_mode_.step(!run_.isRunning() && port_.link().isPathComplete());
     if (run_.phase() == RunPhase::IDLE && port_.motion().isInPosition) {
         io_.set_tool_offset(reader_.canon().tool_offset().value_or(io_.outputs.tool_offset));

@@ -21,32 +21,33 @@ struct Parts {
     journal::Writer *journal = nullptr;  ///< null: programs are not journalled
 };
 
-/// Creates the parts of task, and calls each in its step. One thread; step() does not block.
+/// Creates the parts of task, and calls each part in its step. One thread; step() does not block.
 class Task {
   public:
     Task(const Parts &parts, Settings settings);
     Task(const Task &) = delete;
     Task &operator=(const Task &) = delete;
 
-    /// Sends settings and tables of screw errors to the motion controller; a rejected one becomes a message,
-    /// and the first is kept.
+    /// Sends settings and tables of screw errors to the motion controller. Each rejection becomes a message,
+    /// and the first one is stored.
     void configure(const std::vector<motion::SetParameter> &parameters, const ScrewTables &tables = {});
     /// Changes one setting later; the caller has checked that it may change now.
     void change(const motion::SetParameter &parameter) { motion_settings_.change(parameter); }
     /// The current settings of motion.
     const motion::Settings &motion_settings() const { return motion_settings_.current(); }
-    /// All settings have been answered; then an error when one or a table was rejected.
+    /// True when all settings have been answered; an error if a setting or table was rejected.
     Result<bool> isConfigured() const { return motion_settings_.isConfigured(); }
 
     /// Loads parameters and announces the start state to the interpreter. Errors name file, line and column.
     Result<> start();
-    /// Writes the parameter file and waits for it: at the end of the machine, or for a reader of the file.
+    /// Writes the parameter file and waits for it. Called at the end of the machine, or for a reader of the
+    /// file.
     Result<> save_parameters() { return runs_.save_parameters(); }
 
     /// One task cycle at clock time `now_ns`.
     void step(std::int64_t now_ns);
     /// A cycle of a thread that uses task while step() is in a long call: stops, pauses, overrides and the
-    /// status. Actions that need the interpreter follow when the call has ended; other commands wait.
+    /// status. Actions that need the interpreter follow after the call; other commands wait.
     void step_apart(std::int64_t now_ns);
     /// For the thread that calls step_apart().
     LongCall &long_call() { return reader_.call().call; }

@@ -23,7 +23,7 @@ extern char **environ;
 namespace mw::machine {
 namespace {
 
-/// Maximum length of a line, and of the data that waits for a program that does not read. [bytes]
+/// Maximum length of a line, and of data waiting for a program that does not read. [bytes]
 constexpr std::size_t MOST_BYTES = 65536;
 
 void close_end(int &fd) {
@@ -42,7 +42,7 @@ std::string ending_of(int status) {
 Result<LineProgram> LineProgram::start(const std::vector<std::string> &words, const std::string &folder) {
     LineProgram made;
     made.name_ = words.front();
-    // Sockets, because a pipe without a reader would send a signal to this process.
+    // Sockets are used, because a write to a pipe without a reader would send a signal to this process.
     int input[2] = {-1, -1}, output[2] = {-1, -1};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input) != 0 ||
         ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, output) != 0) {
@@ -108,7 +108,7 @@ void LineProgram::end() noexcept {
     close_end(in_);
     close_end(out_);
     constexpr int SIGNALS[] = {0, SIGTERM, SIGKILL};
-    constexpr int LOOKS = 50;  // for each stage
+    constexpr int LOOKS = 50;  // number of checks for each stage
     for (const int signal : SIGNALS) {
         if (pid_ != 0 && signal != 0) {
             ::kill(-pid_, signal);

@@ -13,20 +13,19 @@
 
 namespace mw::machine {
 
-/// The destructor ends the program: closes its input, then requests its end, then kills it. Not realtime; one
-/// thread.
+/// The destructor closes the program's input, then requests its end, then kills it. Not realtime; one thread.
 class LineProgram {
   public:
-    /// `words`: the program, by its path from `folder` or found in PATH, and its arguments. It runs in
-    /// `folder` and shares our stderr.
+    /// `words`: the program, as a path from `folder` or a name in PATH, and its arguments. It runs in
+    /// `folder` and shares our standard error.
     static Result<LineProgram> start(const std::vector<std::string> &words, const std::string &folder);
     LineProgram(LineProgram &&other) noexcept;
     LineProgram &operator=(LineProgram &&other) noexcept;
     ~LineProgram();
 
     const std::string &name() const { return name_; }
-    /// Does not block: text that the program does not accept at once waits; an error when it has ended, or
-    /// accepts nothing for too long.
+    /// Does not block. Text that the program does not accept at once waits. An error if the program has
+    /// ended, or does not accept text for too long.
     Result<> write(const std::string &line);
     /// The next complete line without its end. Does not block.
     std::optional<std::string> read();
@@ -42,7 +41,7 @@ class LineProgram {
     void end() noexcept;
 
     std::string name_;
-    pid_t pid_ = 0;  ///< 0: ended
+    pid_t pid_ = 0;  ///< 0: the program has ended
     std::string ending_;
     int in_ = -1, out_ = -1;  ///< its input and output
     std::string unsent_, received_;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The person who changes tools by hand, as an in-process part: component hal_manualtoolchange (man page of
-// that name).
+// Manual tool change as an in-process part: component hal_manualtoolchange (man page of that name).
 #pragma once
 
 #include <cstdint>
@@ -18,7 +17,7 @@ enum class ToolHand : std::uint8_t {
     PERSON,     ///< confirmed by the pin change_button, or by confirm()
 };
 
-/// Each change is reported to `notice`.
+/// Reports each change to `notice`.
 class ManualToolChange {
   public:
     using Notice = std::function<void(const std::string &)>;
@@ -27,7 +26,7 @@ class ManualToolChange {
     void destroy();
     void step(std::int64_t now_ns);
 
-    /// A person is asked to change the tool.
+    /// True if a person is asked to change the tool.
     bool isAsking() const {
         return hal_ != nullptr && hand_ == ToolHand::PERSON && asked_ns_ >= 0 && !confirmed_;
     }

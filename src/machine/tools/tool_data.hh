@@ -13,7 +13,7 @@
 
 namespace mw::machine {
 
-/// Changes are kept in memory only: for calculations ahead. Not realtime; one thread.
+/// Keeps changes only in memory, for calculations ahead. Not realtime; one thread.
 class ToolData : public task::ToolStore {
   public:
     explicit ToolData(tools::Table table) : table_(std::move(table)) {}
@@ -33,8 +33,9 @@ class ToolData : public task::ToolStore {
     Result<> reload() override { return {}; }
     std::uint64_t version() const override { return version_; }
 
-    /// Stores tool life in this file from now on; `sink` receives a warning when it cannot be read. Written
-    /// by `keeper`, which outlives this: at tool changes, after each minute of cutting, and by save_life().
+    /// From now on stores tool life in this file; `sink` receives a warning if it cannot be read. `keeper`,
+    /// which must outlive this object, writes it at tool changes, after each minute of cutting, and in
+    /// save_life().
     void keep_life(const std::string &path, journal::Writer &keeper, diagnostics::Sink &sink);
     void save_life();
     void note_cut(int toolno, const tools::CutLife &cut) override;
@@ -43,7 +44,7 @@ class ToolData : public task::ToolStore {
     const tools::Table &table() const { return table_; }
 
   protected:
-    /// Uses the tools that were read; the spindle of a fixed changer keeps its tool.
+    /// Replaces the tools by those that were read; a fixed changer keeps the tool in its spindle.
     void replace(tools::Table table);
     /// Restores the table before a change that could not be stored.
     void restore(tools::Table table) {
@@ -66,15 +67,15 @@ class ToolData : public task::ToolStore {
 /// Options for opening the tools of a machine.
 struct ToolOptions {
     journal::Writer *keeper =
-        nullptr;  ///< writes the files of a machine that really cuts; outlives the tools
-    /// Waits within a cycle for a database program and the disk of the tool table: for virtual clocks.
+        nullptr;  ///< writes the files of a machine that actually cuts; must outlive the tools
+    /// Waits within a cycle for a database program and the disk of the tool table; for virtual clocks.
     bool awaited = false;
 };
 
-/// The tools of the machine. `sink` receives warnings about lines that are not usable.
+/// The tools of the machine. `sink` receives warnings about lines that cannot be used.
 Result<std::unique_ptr<task::ToolStore>> open_tools(const MachineConfig &machine, diagnostics::Sink &sink,
                                                     const ToolOptions &options = {});
-/// The current tools for calculations ahead: nothing is written.
+/// A copy of the current tools for calculations ahead; it writes nothing.
 Result<std::unique_ptr<task::ToolStore>> read_tools(const MachineConfig &machine, diagnostics::Sink &sink);
 
 }  // namespace mw::machine

@@ -125,7 +125,7 @@ void ToolDatabase::step() {
 
 void ToolDatabase::take_line(const std::string &line) {
     if (awaited_.empty()) {
-        return;  // no request is pending: the protocol has no such line
+        return;  // there is no pending request, and the protocol does not know this line
     }
     const Awaited awaited = awaited_.front();
     switch (awaited.kind) {
@@ -172,9 +172,9 @@ std::string ToolDatabase::spindle_path() const {
     return (std::filesystem::path(setup_.folder) / "db_spindle.tbl").string();
 }
 
-/// A random changer whose database reports no tool in the spindle: our stored one counts.
+/// For a random changer whose database reports no tool in the spindle: uses the stored tool.
 void ToolDatabase::find_spindle_tool(tools::Table &read) {
-    if (!spindle_text_.has_value()) {  // at the start
+    if (!spindle_text_.has_value()) {  // only at the start
         spindle_text_ = isRandom() ? read_file(spindle_path()).value_or("") : "";
     }
     if (!isRandom() || read.entry(0).toolno >= 0 || spindle_text_->empty()) {

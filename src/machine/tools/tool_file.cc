@@ -9,11 +9,11 @@
 
 namespace mw::machine {
 
-/// What the thread of the disk reads.
+/// Data that the thread of the disk reads.
 struct ToolFile::Reading {
     std::mutex mutex;
-    std::optional<Result<tools::Table>> table;  ///< under the mutex
-    diagnostics::Sink sink;                     ///< of that thread until there is a table
+    std::optional<Result<tools::Table>> table;  ///< guarded by the mutex
+    diagnostics::Sink sink;                     ///< used by that thread until there is a table
 };
 
 Result<std::unique_ptr<task::ToolStore>> ToolFile::load(const std::string &path, diagnostics::Sink &sink,
@@ -138,7 +138,8 @@ Result<> ToolFile::save_or_restore(tools::Table before) {
     if (!saved.has_value()) {
         restore(std::move(before));
         if (keeper_ != nullptr) {
-            keeper_->keep_file(path_, table().text());  // a disk that answers later must not write the change
+            // replaces the pending text, so that a disk that answers later does not write the change
+            keeper_->keep_file(path_, table().text());
         }
     }
     return saved;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tool table file of a machine: the one owner of the tool data (requirement G4).
+// The tool table file of a machine: the only owner of the tool data (requirement G4).
 #pragma once
 
 #include <memory>
@@ -11,12 +11,12 @@
 
 namespace mw::machine {
 
-/// Not realtime; one thread. Each change is written to the file at once, atomically: by `keeper`, which
-/// outlives this, or within the call where there is none.
+/// Not realtime; one thread. Each change is written to the file at once, atomically: by `keeper`, which must
+/// outlive this object, or within the call if there is no keeper.
 class ToolFile final : public ToolData {
   public:
-    /// An empty path is an empty table that lives in memory only; a file that is not there an empty one.
-    /// `sink` is warned of that and of lines that cannot be used.
+    /// An empty path is an empty table in memory; a missing file is an empty table. `sink` receives warnings
+    /// about a missing file and about lines that cannot be used.
     static Result<std::unique_ptr<task::ToolStore>> load(const std::string &path, diagnostics::Sink &sink,
                                                          tools::Changer changer, journal::Writer *keeper);
 
@@ -42,17 +42,17 @@ class ToolFile final : public ToolData {
     Result<> read(diagnostics::Sink &sink);
     void ask_for_text();
     void keep_warnings(const diagnostics::Sink &sink);
-    /// After a change of the table.
+    /// Writes the table after a change.
     Result<> keep();
-    /// Of a change that is undone where it cannot be saved.
+    /// Saves a change, and undoes it if it cannot be saved.
     Result<> save_or_restore(tools::Table before);
 
     std::string path_;
     journal::Writer *keeper_;
-    std::shared_ptr<Reading> reading_;          ///< under way
-    bool is_reading_old_ = false;               ///< the table has changed since it began
-    std::optional<Result<>> read_{Result<>{}};  ///< how the last one has ended
-    std::vector<std::string> warnings_;         ///< of the last reading, not told yet
+    std::shared_ptr<Reading> reading_;          ///< the reading under way
+    bool is_reading_old_ = false;               ///< the table has changed since the reading began
+    std::optional<Result<>> read_{Result<>{}};  ///< result of the last reading
+    std::vector<std::string> warnings_;         ///< warnings of the last reading, not reported yet
 };
 
 }  // namespace mw::machine

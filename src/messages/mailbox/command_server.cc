@@ -189,8 +189,7 @@ void CommandServer::check_owner(int index, std::vector<Delivery> &out) {
         outcome.write({});
     }
     for (std::uint32_t n = 0; n < MAX_POSTED && slot.posted.pop(posted_); ++n) {
-        // The client posted these commands before its death and after this read; they are treated as too
-        // late.
+        // Drops commands that the client posted between the last read and its death.
     }
     for (auto &stop : slot.stops) {
         stop.store(0, std::memory_order_relaxed);

@@ -36,7 +36,7 @@ class LimitUseTest : public ::testing::Test {
 TEST_F(LimitUseTest, RatiosAreDifferencesOverLimits) {
     measure(use_sample(0, 0, 0, 1));
     measure(use_sample(0, 0, 0, 2));
-    measure(use_sample(0.003, 0.004, 0.001, 3));  // from rest to 3 and 4 units/s, and to 1
+    measure(use_sample(0.003, 0.004, 0.001, 3));  // from standstill to 3 and 4 units/s, and to 1
     measure(use_sample(0.006, 0.008, 0.002, 4));
     const auto &uses = use_.uses();
     EXPECT_NEAR(uses[0].ratio(0), 0.3, 1e-9);

@@ -114,7 +114,7 @@ TEST_F(MotionCertificateTest, MotionOutsideOfTheProgramDoesNotCount) {
 TEST_F(MotionCertificateTest, MotionAfterTheLastMoveHasEndedCounts) {
     send(0, 1);
     drive(0, 0.8);
-    for (int i = 1; i <= 100; ++i) {  // the moving average arrives, twice as fast
+    for (int i = 1; i <= 100; ++i) {  // the moving average arrives, at twice the speed
         motion::TraceSample s = sample(0.8 + 0.002 * i);
         s.path_id = 0;
         s.isInMotion = i < 100 ? 1 : 0;

@@ -39,7 +39,7 @@ class PathDeviationTest : public ::testing::Test {
         path_.on_sample(p, id, 1000000 * count_++);
         last_ = p;
     }
-    /// Samples on a line, from the last one.
+    /// Adds samples on a line from the last sample to `end`.
     void drive(const Pose &end, int steps = 100, std::uint64_t id = 1) {
         const Pose from = last_;
         for (int i = 1; i <= steps; ++i) {
@@ -81,7 +81,7 @@ TEST_F(PathDeviationTest, ACornerThatIsCutIsMeasuredAtTheCorner) {
 }
 
 TEST_F(PathDeviationTest, OrderCounts) {
-    // A triangle: driven the other way round it is as near to the path at each sample.
+    // A triangle: driven in the opposite direction it has the same distance from the path at each sample.
     lines({at(10, 0), at(5, 8), at(0, 0)});
     drive(at(5, 8));
     drive(at(10, 0));
@@ -91,7 +91,7 @@ TEST_F(PathDeviationTest, OrderCounts) {
 }
 
 TEST_F(PathDeviationTest, APartThatIsLeftOutCounts) {
-    // Out and back on the same line: the samples stay near to the path and leave this part out.
+    // Out and back on the same line: the samples stay near the path but omit this part.
     lines({at(10, 0), at(10, 3), at(10, 0), at(20, 0)});
     drive(at(20, 0), 500);
     path_.complete();
@@ -197,7 +197,8 @@ TEST_F(PathDeviationTest, RigidTappingIsNotMeasured) {
     EXPECT_EQ(path_.source().line, 3);
 }
 
-/// Random paths of short lines, samples off them: compared with the bisection of tests/support/deviation.hh.
+/// Random paths of short lines with samples beside them, compared with the bisection of
+/// tests/support/deviation.hh.
 TEST_F(PathDeviationTest, RandomPathsAgreeWithTheOtherJudge) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> unit(-1, 1);

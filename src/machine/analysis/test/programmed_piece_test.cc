@@ -10,7 +10,7 @@
 namespace mw::machine {
 namespace {
 
-/// The smallest distance among finely spaced points of the piece.
+/// The smallest distance among closely spaced points of the piece.
 double searched(const PieceShape &shape, const geometry::Pose &p, double from) {
     constexpr int STEPS = 20000;
     double least = 1e300;
@@ -34,7 +34,7 @@ TEST(ProgrammedPiece, PartsOfAnArcAreTheArc) {
     ProgrammedPiece helix;
     helix.start = at(10, 0, 0, 5);
     helix.end = at(0, 10.1, 4, 25);  // the radius grows
-    helix.normal = at(0, 0, 2);      // any length
+    helix.normal = at(0, 0, 2);      // the normal may have any length
     helix.angle_rad = 4.5 * std::numbers::pi;
     const PieceShape whole(helix);
     const geometry::Pose end = whole.point_at(1);
@@ -43,7 +43,8 @@ TEST(ProgrammedPiece, PartsOfAnArcAreTheArc) {
         const PieceShape part(whole.part_of(i, 18));
         for (const double f : {0.0, 0.3, 1.0}) {
             const geometry::Pose d = part.point_at(f) - whole.point_at((i + f) / 18);
-            EXPECT_NEAR(geometry::norm(d), 0, 1e-3) << i << ' ' << f;  // growth is of the radius at its start
+            // the growth is relative to the radius at its start
+            EXPECT_NEAR(geometry::norm(d), 0, 1e-3) << i << ' ' << f;
         }
     }
 }
@@ -71,7 +72,8 @@ TEST(ProgrammedPiece, NearestPointIsThatOfAFineSearch) {
                     const Nearest found = shape.nearest(p, from);
                     EXPECT_GE(found.fraction, from);
                     EXPECT_LE(found.fraction, 1);
-                    const double other = searched(shape, p, from);  // at most half a step from the nearest
+                    // at most half a step from the nearest point
+                    const double other = searched(shape, p, from);
                     EXPECT_LE(found.distance(), other + 1e-9) << f;
                     EXPECT_GE(found.distance(), other - 3e-3) << f;
                 }

@@ -39,7 +39,7 @@ TEST(CycleThread, DoesNotWaitForALongCall) {
     }
     EXPECT_EQ(apart, 3);
     EXPECT_EQ(whole, 1);
-    may_end.release();  // it cannot end before give_back()
+    may_end.release();  // the call cannot end before give_back()
     thread.give_back();
     while (thread.run(3), thread.isApart()) {
         thread.give_back();

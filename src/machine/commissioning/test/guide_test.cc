@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Safety of the steps (A7): nothing moves or is switched on without the operator, and everything stops when
-// the operator is gone. `tests/commissioning` judges what the steps find.
+// the operator leaves. `tests/commissioning` judges the findings of the steps.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace mw::commissioning {
 namespace {
 
-/// A machine that follows each request at once.
+/// A machine that executes each request at once.
 class FakeBench final : public Bench {
   public:
     double now_s() const override { return time_s; }
@@ -97,7 +97,7 @@ class GuideTest : public ::testing::Test {
             }
         }
     }
-    /// Confirms until a prompt wants the button of the first motion.
+    /// Confirms prompts until a prompt requires the button of the first motion.
     bool reach_motion() {
         for (int i = 0; i < 30000 && guide_.prompt().ask != Ask::HOLD; ++i) {
             if (guide_.prompt().ask == Ask::CONFIRM) {
@@ -133,7 +133,7 @@ TEST_F(GuideTest, OneDriveIsEnabledAloneAndMovesOnlyWhileTheButtonIsHeld) {
     EXPECT_EQ(bench_.moves, 0) << "moves without the button";
     hold_for(300);
     EXPECT_GT(bench_.position[0], 0.1);
-    // The button is no longer renewed: it counts as released.
+    // The button is not renewed, so it counts as released.
     cycle(300);
     const double stopped = bench_.position[0];
     cycle(2000);
@@ -259,7 +259,7 @@ TEST_F(GuideTest, AReversedDirectionIsCorrectedAndCanBeTakenBack) {
     cycle(2000);
     EXPECT_EQ(restarts_, 1);
     EXPECT_EQ(guide_.answers().at("x.way_per_turn"), "-5");
-    // It is checked again with the corrected direction.
+    // The step checks again with the corrected direction.
     ASSERT_TRUE(reach_motion());
     hold_for(10000);
     ASSERT_TRUE(guide_.act(guide_.prompt_number(), {Act::Type::CHOICE, 0, "positive"}));

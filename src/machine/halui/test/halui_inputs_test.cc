@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// halui's wheels, spindles, jogs and MDI buttons, and how they end.
+// Tests halui's wheels, spindles, jogs and MDI buttons, and how they end.
 #include <functional>
 
 #include "machine/halui/test/halui_rig.hh"
@@ -175,7 +175,7 @@ TEST_F(HaluiInputs, AJogThatSomethingElseHasEndedBeginsWithNoSelection) {
     set_value("joint.jog-speed", "300");
     set("joint.selected.plus", true);
     cycle();
-    progress = Progress::REFUSED;  // as after an abort
+    progress = Progress::REFUSED;  // the progress after an abort
     now_ns += 100000000;
     cycle();
     halui.step();

@@ -54,7 +54,7 @@ class HaluiRig : public ::testing::Test {
         EXPECT_EQ(cycle(), "") << name << " is released";
         return all;
     }
-    /// A cycle of task; returns the commands as text.
+    /// Runs a cycle of task; returns the commands as text.
     std::string cycle() {
         std::string all;
         halui.step();

@@ -9,10 +9,10 @@
 
 namespace mw::journal::test {
 
-/// Shared by a test and its disk, which may outlive the test.
+/// State shared by a test and its disk, which may outlive the test.
 struct HungCalls {
     std::latch isCalled{1};    ///< the disk is in a call
-    std::latch isReleased{1};  ///< set by the test: the disk answers
+    std::latch isReleased{1};  ///< set by the test to let the disk answer
     void wait() {
         if (!isCalled.try_wait()) {
             isCalled.count_down();
@@ -21,7 +21,7 @@ struct HungCalls {
     }
 };
 
-/// The disk of this computer, which answers only when the test releases it.
+/// The disk of this computer, which answers only after the test releases it.
 class HungDisk final : public Disk {
   public:
     explicit HungDisk(std::shared_ptr<HungCalls> calls) : calls_(std::move(calls)) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A disk in memory whose power can be cut: unsynced data is lost in the same way as on a real disk.
+// A disk in memory whose power can be cut. Data that was not synced is lost as on a real disk.
 #pragma once
 
 #include <algorithm>
@@ -25,11 +25,11 @@ class TornDisk {
     std::map<Id, File> files;
     std::map<std::string, Id> names, synced_names;
     Id last = 0;
-    /// Steps until the power fails; negative: it does not.
+    /// Number of steps until the power fails; negative: it does not fail.
     long steps_left = -1;
     bool isDead = false;
 
-    /// Counts a step; true: the power has failed, and later steps have no effect.
+    /// Counts a step. Returns true if the power has failed; later steps then have no effect.
     bool tick() {
         isDead = isDead || steps_left == 0;
         steps_left -= steps_left > 0 ? 1 : 0;
@@ -47,7 +47,7 @@ class TornDisk {
         for (auto &[id, file] : files) {
             file.now = file.synced = torn(file, random);
         }
-        // Each change of a name since the last sync of the folder may have reached the disk or not.
+        // Each change of a name since the last sync of the folder may or may not have reached the disk.
         for (const auto &[path, id] : names) {
             if (!synced_names.contains(path) || synced_names[path] != id) {
                 if (chance(2)) {
@@ -86,7 +86,7 @@ class TornDisk {
     }
 };
 
-/// A program's view of it.
+/// The disk as seen by a program.
 class TornDiskView final : public Disk {
   public:
     explicit TornDiskView(TornDisk &disk) : disk_(disk) {}

@@ -108,7 +108,7 @@ TEST_F(JournalWriter, ItDoesNotGrowWithoutEnd) {
     EXPECT_EQ(open()->found().run->progress->block, 29999U);
 }
 
-/// Power fails at each step of a disk that loses unsynced data: completed work survives, files are old or
+/// The power fails at each step of a disk that loses unsynced data. Completed work survives; files are old or
 /// new.
 TEST_F(JournalWriter, WhateverThePowerCutTakesWhatWasWorkedOffIsThere) {
     for (unsigned seed = 0; seed < 3000; ++seed) {
@@ -237,7 +237,7 @@ TEST(JournalWriterThread, WritesToARealDiskBesideWhoAsks) {
     EXPECT_EQ(content(folder / "life"), "T1 1 1\n");
     {
         Writer writer(system_disk(), "", Works::ALONE);
-        for (int i = 0; i < 200; ++i) {  // an earlier text that the thread has taken does not overwrite it
+        for (int i = 0; i < 200; ++i) {  // an earlier text in the thread must not overwrite it
             writer.keep_file(folder / "p.var", "older");
             ASSERT_TRUE(writer.write_file(folder / "p.var", std::to_string(i)).has_value());
             EXPECT_EQ(content(folder / "p.var"), std::to_string(i));

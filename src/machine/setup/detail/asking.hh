@@ -19,12 +19,12 @@ struct AxisPreset {
 
 struct Kind {
     std::string_view name, axes;
-    double travel_per_turn;  ///< of a motor [mm]
+    double travel_per_turn;  ///< travel per motor revolution [mm]
     std::array<AxisPreset, 5> presets;
 };
 
 const Kind &kind_of(const Answers &given);
-/// A machine type and all the others.
+/// Names of a machine type and all types after it.
 std::vector<std::string> kind_names();
 
 constexpr double SHORTEST = 0.001, LONGEST = 100000;
@@ -45,7 +45,7 @@ class Asking {
 
     void choice(std::string key, std::string text, std::vector<std::string> choices, std::string reason);
     void number(std::string key, std::string text, double preset, const char *unit, std::string reason);
-    /// The limits of the question that was asked last.
+    /// Sets the limits of the last question.
     void within(double low, double high);
     void whole(std::string key, std::string text, int preset, const char *unit, std::string reason);
     void text(std::string key, std::string text, std::string preset, std::string reason);

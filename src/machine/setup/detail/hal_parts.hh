@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the HAL files of a machine have in common: names of the board's terminals, and the list of its joints.
+// Functions that the HAL files of a machine share: names of the board's terminals, and the list of its
+// joints.
 #pragma once
 
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace mw::setup::detail {
 
-/// First lines of a HAL file: licence, then what the file is for.
+/// First lines of a HAL file: the licence, then the purpose of the file.
 std::string heading(const std::string &purpose);
 
 /// Calls `act` for each motor with its joint number.
@@ -26,7 +27,7 @@ void each_motor(const Plan &plan, Act act) {
 
 /// "hm2_7i76e.0": the board in HAL.
 std::string board_name(const Plan &plan);
-/// The pin of an input, true while its contact is actuated if `inverted` matches the contact.
+/// The pin of an input. It is true while the contact is actuated, if `inverted` matches the contact.
 std::string in_pin(const Plan &plan, int number, bool inverted = false);
 std::string out_pin(const Plan &plan, int number);
 /// Prefix of the step generator or of the PWM output of a motor.
@@ -39,7 +40,7 @@ std::string spindle_stepgen_name(const Plan &plan);
 // hal_text.cc
 std::string motion_hal(const Plan &plan);
 std::string tool_change_hal(const Plan &plan);
-/// The order of the functions: the last file of the machine itself.
+/// The order of the functions, in the last file of the machine.
 std::string threads_hal(const Plan &plan);
 // hal_motors.cc
 std::string board_hal(const Plan &plan);

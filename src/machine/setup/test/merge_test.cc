@@ -38,7 +38,7 @@ TEST(Merge, LinesAtTheEndsAndWithoutAnEnd) {
     EXPECT_EQ(merge("a\nb\n", "", "a\nb\n", Side::EDITED).text, "");
 }
 
-/// Random edits: one side alone always wins, and without an edit the new text is the result.
+/// Random edits. If only one side has changes, they are kept; without an edit the new text is the result.
 TEST(Merge, OneSideAloneIsTakenAsItIs) {
     std::mt19937 random(7);
     const auto text = [&](int lines) {

@@ -28,7 +28,7 @@ Result<Progress> done(const Result<> &result) {
 
 }  // namespace
 
-/// One overload for each command: done, started, or rejected.
+/// One overload for each command. It returns done, started, or rejected.
 struct CommandDispatcher::Handler {
     using Outcome = Result<Progress>;
 
@@ -37,7 +37,7 @@ struct CommandDispatcher::Handler {
     Inbox &inbox;
     mailbox::Serial id;
 
-    // States and modes.
+    // --- states and modes
     Outcome operator()(const SetState &command) {
         if (command.state == State::ESTOP || command.state == State::OFF) {
             run.port.refuse(inbox.drop_before(id), OVERTAKEN);
@@ -62,7 +62,7 @@ struct CommandDispatcher::Handler {
                    : (*this)(SetTeleop{command.mode == messages::MotionMode::TELEOP});
     }
 
-    // Programs and MDI lines.
+    // --- programs and MDI lines
     Outcome operator()(const OpenProgram &command) { return parts.runs.open(command.path); }
     Outcome operator()(const CloseProgram &) { return parts.runs.close(); }
     Outcome operator()(const ResetInterpreter &) { return parts.runs.reset_interpreter(); }
@@ -97,7 +97,7 @@ struct CommandDispatcher::Handler {
         return Progress::DONE;
     }
 
-    // Joints, axes, spindles and devices.
+    // --- joints, axes, spindles and devices
     Outcome operator()(const HomeJoint &command) { return parts.manual.home(id, command.joint); }
     template <OneOf<JogContinuous, JogIncrement, JogAbsolute> C>
     Outcome operator()(const C &command) {
@@ -120,7 +120,7 @@ struct CommandDispatcher::Handler {
         return parts.manual.change_spindle_speed(command.spindle,
                                                  std::is_same_v<C, SpindleIncrease> ? 100 : -100);
     }
-    /// Each step is done at once: there is none to end.
+    /// Each step is done at once, so there is nothing to end.
     Outcome operator()(const SpindleConstant &command) {
         return done(parts.manual.check_spindle(command.spindle));
     }
@@ -129,8 +129,8 @@ struct CommandDispatcher::Handler {
         return parts.manual.switch_device(command);
     }
 
-    // Settings and tools.
-    /// Done when motion has accepted it.
+    // --- settings and tools
+    /// Done when motion has accepted the setting.
     template <class C>
         requires requires(const C &command) { in_motion_words(command); }
     Outcome operator()(const C &command) {
@@ -179,7 +179,7 @@ struct CommandDispatcher::Handler {
         return Progress::DONE;
     }
 
-    // Lines for the operator.
+    // --- lines for the operator
     Outcome operator()(const Null &) { return Progress::DONE; }
     template <OneOf<OperatorError, OperatorText, OperatorDisplay> C>
     Outcome operator()(const C &command) {
@@ -190,7 +190,7 @@ struct CommandDispatcher::Handler {
         return Progress::DONE;
     }
 
-    /// The mailbox executes these; the table of admission rejects them here.
+    /// The mailbox executes these commands; the table of admission rejects them here.
     template <command_lists::OfTheMailbox C>
     Outcome operator()(const C &) {
         return fail(refusal_of(class_of<C>(), Situation::MANUAL));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Takes the commands of clients from the mailbox, and has the parts of task execute them.
+// Takes the commands of clients from the mailbox and passes them to the parts of task.
 #pragma once
 
 #include "machine/task/control/controllers.hh"
@@ -7,17 +7,18 @@
 
 namespace mw::task {
 
-/// Each command ends once: done, failed, or rejected with a reason. One that is not possible in the state of
-/// the machine is rejected by the table of admission. One thread.
+/// Each command ends once: done, failed, or rejected with a reason. The table of admission rejects a command
+/// that is not possible in the state of the machine. One thread.
 class CommandDispatcher {
   public:
     CommandDispatcher(const RunParts &run, const Controllers &parts) : run_(run), parts_(parts) {}
 
-    /// Once a cycle: the commands that came since; others wait while state or mode change.
+    /// Called once in each cycle: executes the new commands. Other commands wait while state or mode change.
     void execute_commands();
-    /// During a long call: stops and overrides, which need neither the interpreter nor its queue.
+    /// Called during a long call: executes stops and overrides, which need neither the interpreter nor its
+    /// queue.
     void execute_during_call();
-    /// MDI lines follow at once: nothing comes between them.
+    /// MDI lines are executed one after the other without other commands between them.
     void execute_queued_lines();
 
   private:

@@ -9,7 +9,7 @@
 
 namespace mw::task {
 
-/// All outlive their users.
+/// All parts outlive their users.
 struct Controllers {
     IoPins &io_pins;
     RunController &runs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The work of task during a long call into the interpreter: docs/developer/long_calls.md.
+// The work of task during a long call of the interpreter: docs/developer/long_calls.md.
 #pragma once
 
 #include <functional>
@@ -16,22 +16,23 @@ class LongCalls {
   public:
     LongCalls(MachinePort &port, ProgramReader &reader) : port_(port), reader_(reader) {}
 
-    /// In each cycle during a long call. Notifies the operator of a very long one; `place`: what it reads.
+    /// Called in each cycle during a long call. Notifies the operator of a very long call; `place` is what
+    /// the call reads.
     void step(const std::string &place);
     bool isActive() const { return now_.active; }
-    /// A stop was executed during the call: the purpose of the call no longer exists.
+    /// True if a stop was executed during the call, so that its purpose no longer exists.
     bool isStopped() const { return now_.stopped; }
-    /// The axes were stopped during the call: blocks that `sequencer` has not reached do not count as
-    /// executed.
+    /// Called when the axes were stopped during the call. Blocks that `sequencer` has not reached then do not
+    /// count as executed.
     void note_stop(const Sequencer &sequencer);
-    /// Does `work` at the end of the call; at once without one.
+    /// Does `work` at the end of the call, or at once if there is no call.
     void after_call(std::function<void()> work);
 
-    /// After each long call: executes the work that was postponed. True for a stop.
+    /// Called after each long call: executes the postponed work. True after a stop.
     bool end();
-    /// The same after a step of the interpreter; if a stop made it fail, its position is reported.
+    /// As end(), after a step of the interpreter. If a stop made the step fail, its position is reported.
     bool end_step(gcode::Step result);
-    /// Result of `call`, which may wait for a disk; stops are executed meanwhile.
+    /// Returns the result of `call`, which may wait for a disk; stops are executed meanwhile.
     template <class Call>
     auto beside(const Call &call) {
         auto result = [&] {
@@ -46,10 +47,10 @@ class LongCalls {
     struct State {
         bool active = false;
         bool stopped = false;
-        bool reported = false;       ///< to the operator
-        bool wait_reported = false;  ///< reported that it does not end after a stop
+        bool reported = false;       ///< the long call was reported to the operator
+        bool wait_reported = false;  ///< it was reported that the call does not end after a stop
         std::int64_t stopped_ns = 0;
-        std::int64_t since_ns = 0;  ///< time of its first cycle
+        std::int64_t since_ns = 0;  ///< time of the first cycle of the call
         std::vector<std::function<void()>> later;
     };
 

@@ -13,7 +13,7 @@ MotionLink::News MachinePort::update() {
 }
 
 Result<Progress> MachinePort::settle(mailbox::Serial command) {
-    // Clients receive it within 100 ms, including the period of a server between them.
+    // Maximum time until clients receive the answer, including the period of a server between them.
     constexpr std::int64_t ANSWERED_WITHIN_NS = 60000000;
     const motion::CommandId order = link_.open_order();
     if (!link_.watch().isSilent() || order == 0) {
@@ -35,7 +35,7 @@ void MachinePort::end_orders() {
     const auto answered = [this](motion::CommandId order) { return isAnswered(order); };
     while (const auto ended = orders_.next(answered, now_ns_)) {
         if (ended->progress == Progress::FAILED) {
-            post_error(ended->reason);  // Python clients do not receive the reason
+            post_error(ended->reason);  // Python clients do not receive the reason with the outcome
         }
         tell(ended);
     }

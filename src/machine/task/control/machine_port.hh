@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine and its clients as the parts of task see them.
+// The interface of the parts of task to the machine and its clients.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@
 
 namespace mw::task {
 
-/// Why a command that waited was never begun.
+/// The reason why a waiting command was not begun.
 inline constexpr const char *OVERTAKEN = "it came before a stop";
 
-/// Sends commands to motion, reports to clients, and has the time of the cycle. One thread.
+/// Sends commands to motion, reports to clients, and provides the time of the cycle. One thread.
 class MachinePort {
   public:
     MachinePort(motion::Channels &channels, mailbox::Segment &segment) : server_(segment), link_(channels) {}
@@ -39,23 +39,23 @@ class MachinePort {
             server_.tell(ending->command, ending->progress, ending->reason);
         }
     }
-    /// These commands are not begun.
+    /// Rejects commands that have not begun.
     void refuse(const std::vector<mailbox::Serial> &commands, const char *reason) {
         server_.refuse(commands, reason);
     }
 
-    /// The client's command ends when motion has answered `body`.
+    /// Sends `body` to motion. The client's command ends with motion's answer.
     Result<Progress> order(mailbox::Serial command, const motion::CommandBody &body,
                            RefusalIsFor reader = RefusalIsFor::EVERYBODY) {
         orders_.begin(command, send(body), reader, now_ns_);
         return Progress::STARTED;
     }
-    /// A stop has been sent to motion, and is done; if motion does not run now, it is reported when motion
-    /// has executed it.
+    /// For a stop that has been sent to motion: it is done. If motion does not run now, it is reported when
+    /// motion has executed it.
     Result<Progress> settle(mailbox::Serial command);
-    /// Motion has rejected `order`. False: only its client receives the reason.
+    /// Called when motion has rejected `order`. False: only its client receives the reason.
     bool refuse_order(motion::CommandId order, const std::string &reason);
-    /// Once a cycle: reports the commands that motion has answered.
+    /// Called once in each cycle: reports the commands that motion has answered.
     void end_orders();
 
   private:

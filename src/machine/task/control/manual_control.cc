@@ -86,7 +86,7 @@ void ManualControl::step() {
         homing_.begin(turn->joint, turn->command, port_.send(motion::Home{turn->joint}));
     } else if (ended.has_value() && modes_.mode() == Mode::MANUAL && !modes_.isModeChanging() &&
                port_.motion().isAllHomed) {
-        port_.send(motion::SetMode{motion::Mode::TELEOP});  // axes can be jogged from now on
+        port_.send(motion::SetMode{motion::Mode::TELEOP});  // from now on axes can be jogged
     }
 }
 

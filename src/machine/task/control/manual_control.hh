@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What operators move and switch without a program: jogs, homing, spindles, coolant, lubrication.
+// Manual operation of the machine: jogs, homing, spindles, coolant, lubrication.
 #pragma once
 
 #include <type_traits>
@@ -9,7 +9,8 @@
 
 namespace mw::task {
 
-/// Receiver of the reason why a jog was rejected: a client that renews it does so many times a second.
+/// Receiver of the reason why a jog was rejected. A client that renews a jog does so many times a second, so
+/// only the first rejection is for the operator.
 inline RefusalIsFor reader_of_refusal(const JogContinuous &jog) noexcept {
     return jog.isRenewal ? RefusalIsFor::ITS_CLIENT : RefusalIsFor::EVERYBODY;
 }
@@ -21,13 +22,13 @@ class ManualControl {
                   int num_spindles)
         : port_(port), io_(io), sequencer_(sequencer), modes_(modes), num_spindles_(num_spindles) {}
 
-    /// `joint` -1: all.
+    /// `joint` -1: all joints.
     Result<Progress> home(mailbox::Serial command, int joint);
     Result<Progress> jog(mailbox::Serial command, const JogContinuous &jog);
     Result<Progress> jog(mailbox::Serial command, const JogIncrement &jog);
     Result<Progress> jog(mailbox::Serial command, const JogAbsolute &jog);
     Result<Progress> stop_jog(const JogStop &jog);
-    /// Signed speed; 0 stops the spindle.
+    /// Sets a signed speed; 0 stops the spindle.
     Result<Progress> set_spindle(int spindle, double speed_rpm);
     /// Changes the speed of a running spindle.
     Result<Progress> change_spindle_speed(int spindle, double step_rpm);
@@ -46,14 +47,14 @@ class ManualControl {
         return Progress::DONE;
     }
 
-    /// Once a cycle: homing that has ended, and the joint that waits.
+    /// Called once in each cycle: reports homing that has ended, and homes the next waiting joint.
     void step();
-    /// Motion has rejected a command.
+    /// Called when motion has rejected a command.
     void refuse(motion::CommandId order, const std::string &reason);
-    /// Work was aborted: homing and the joints that wait are abandoned.
+    /// Called when work was aborted: homing and waiting joints are abandoned.
     void abort();
     bool isHoming() const { return homing_.isUnderWay(); }
-    /// Joint that is homed, -1: all.
+    /// The joint being homed, -1: all.
     int homed_joint() const { return homing_.joint(); }
 
   private:

@@ -34,8 +34,8 @@ Result<Progress> ModeController::set_state(mailbox::Serial command, State state)
 
 Result<Progress> ModeController::set_mode(mailbox::Serial command, Mode mode, bool homing) {
     const motion::Status &motion = port_.motion();
-    // In manual mode axes can be jogged when all joints are homed. While joints move the mode does not
-    // change.
+    // In manual mode axes can be jogged when all joints are homed. The mode does not change while joints
+    // move.
     const bool is_wanted_again =
         mode == Mode::MANUAL && motion.mode != jog_mode() && motion.isInPosition && !homing;
     if (mode == mode_.mode() && !is_wanted_again) {
@@ -57,7 +57,7 @@ Result<Progress> ModeController::release_axes(mailbox::Serial command) {
     return Progress::STARTED;
 }
 
-/// Done when motion has changed its mode, to joint mode if `may_move_joints` and axes cannot be moved.
+/// Done when motion has changed its mode; to joint mode if `may_move_joints` and axes cannot be moved.
 void ModeController::change(Mode mode, motion::Mode motion_mode, mailbox::Serial command,
                             bool may_move_joints) {
     const motion::CommandId order = port_.send(motion::SetMode{motion_mode});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The state of the machine and its operating mode, as clients request them and as the machine allows.
+// The state of the machine and its operating mode: the requests of clients, and their result.
 #pragma once
 
 #include "machine/task/control/work_end.hh"
@@ -7,30 +7,31 @@
 
 namespace mw::task {
 
-/// A state that switches the machine off ends all work. A mode changes together with the mode of motion, and
-/// after a stop when the axes have stopped. One thread.
+/// Switching the machine off ends all work. The mode changes together with the mode of motion; after a stop
+/// it changes when the axes have stopped. One thread.
 class ModeController {
   public:
     ModeController(MachinePort &port, io::DiscreteIo &io, WorkEnd &end, LongCalls &calls)
         : port_(port), io_(io), end_(end), calls_(calls) {}
 
     Result<Progress> set_state(mailbox::Serial command, State state);
-    /// `homing`: joints are being homed, so manual mode keeps its type of jogs.
+    /// `homing`: joints are being homed, so manual mode keeps its jog mode.
     Result<Progress> set_mode(mailbox::Serial command, Mode mode, bool homing);
-    /// Without a run it also selects manual mode: screens send nothing else when their page of manual
-    /// controls opens.
+    /// Without a run it also selects manual mode, because screens send only this command when their page of
+    /// manual controls opens.
     Result<Progress> set_teleop(mailbox::Serial command, bool teleop, bool running);
-    /// Jogs during a paused program, which continues later.
+    /// Permits jogs during a paused program, which resumes later.
     Result<Progress> release_axes(mailbox::Serial command);
 
-    /// Once a cycle, before the commands: the e-stop chain, and a motion controller that switches off.
+    /// Called once in each cycle before the commands: follows the e-stop chain, and a motion controller that
+    /// switches off.
     void follow_machine();
-    /// Once a cycle, after the commands: requests that are done or late.
+    /// Called once in each cycle after the commands: ends requests that are done or late.
     void end_requests(bool running);
-    /// Motion has rejected a change of its mode that will be requested again, or in another way.
+    /// True if motion has rejected a change of its mode that will be requested again or differently.
     bool isRetried(const motion::Answer &answer, const std::string &reason);
     void refuse(motion::CommandId order, const std::string &reason);
-    /// Work was aborted: a mode that waits is abandoned.
+    /// Called when work was aborted: abandons a waiting mode.
     void abort() { port_.tell(mode_.give_up("aborted")); }
     /// A stop of a run or jog was requested.
     void note_stop() { mode_.note_stop(port_.now_ns()); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The settings of motion: sent at the start, changed by clients and pins, shown to clients.
+// The settings of motion. They are sent at the start, changed by clients and pins, and shown to clients.
 #pragma once
 
 #include <algorithm>
@@ -25,9 +25,9 @@ class MotionSettings {
 
     /// Sends the settings of the machine and tables of screw errors.
     void configure(const std::vector<motion::SetParameter> &parameters, const ScrewTables &tables);
-    /// Motion has rejected a command: the first rejected setting is kept.
+    /// Called when motion has rejected a command: stores the first rejected setting.
     void note_refusal(const MotionLink::Refusal &refusal);
-    /// All settings have been answered; then an error when one or a table was rejected.
+    /// True when all settings have been answered; an error if a setting or table was rejected.
     Result<bool> isConfigured() const;
 
     /// Changes one setting; the caller has checked that it may change now.
@@ -35,14 +35,14 @@ class MotionSettings {
         note(parameter);
         port_.send(parameter);
     }
-    /// A client's command changes these settings of a joint together, or none of them.
+    /// For a client's command: changes these settings of a joint together, or none of them.
     Result<Progress> change_joint(mailbox::Serial command, const std::vector<motion::SetParameter> &changes,
                                   bool homing);
-    /// The operator limits the path speed; never above the machine's limit.
+    /// The operator's limit of the path speed; it never exceeds the machine's limit.
     void limit_velocity(double velocity) { shown_.max_velocity = std::min(velocity, most_velocity_); }
     /// Bits as in [EMC]DEBUG, for clients that use them.
     void set_debug(std::uint32_t mask) { shown_.debug = mask; }
-    /// All settings as in motion.
+    /// All settings that motion uses.
     const motion::Settings &current() const { return current_; }
     const messages::SettingsStatus &shown() const { return shown_; }
 
@@ -55,8 +55,8 @@ class MotionSettings {
     motion::Settings current_;
     messages::SettingsStatus shown_;
     double most_velocity_ = 1e99;  ///< [TRAJ]MAX_LINEAR_VELOCITY
-    motion::CommandId last_ = 0;   ///< of configure()
-    std::string refused_;          ///< why the first one was rejected
+    motion::CommandId last_ = 0;   ///< last command of configure()
+    std::string refused_;          ///< reason why the first setting was rejected
 };
 
 }  // namespace mw::task

@@ -15,7 +15,7 @@ void PausedState::watch() {
     }
     const io::Outputs &io = parts_.io.outputs;
     if (paused_.has_value()) {
-        // A tool change of the program continues during a pause: its tool is the program's.
+        // A tool change of the program continues during a pause, and its tool is the program's tool.
         const bool program_changing = parts_.sequencer.exec_state() == ExecState::WAITING_FOR_IO;
         paused_->tool = program_changing ? io.tool_number : paused_->tool;
         if (program_changing && areToolsChanged()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The state when a program was paused: an operator may stop the spindle, jog and change the tool before it
-// continues.
+// The state at the pause of a program. An operator may stop the spindle, jog and change the tool before it
+// resumes.
 #pragma once
 
 #include <cstdint>
@@ -11,28 +11,29 @@
 
 namespace mw::task {
 
-/// Exists from the pause of a run to its resume or end; what a program itself changes meanwhile belongs to
-/// it. One thread.
+/// Exists from the pause of a run to its resume or end. It includes changes that the program itself makes in
+/// this time. One thread.
 class PausedState {
   public:
     explicit PausedState(const RunParts &parts) : parts_(parts) {}
 
-    /// After each command and each cycle: later changes by an operator are restored at the resume.
+    /// Called after each command and in each cycle. Later changes by an operator are restored at the resume.
     void watch();
-    /// A spindle or coolant that the program had switched on is off, or another tool is in the spindle.
+    /// True if a spindle or coolant that the program had switched on is off, or another tool is in the
+    /// spindle.
     bool isSomethingOff() const;
-    /// The tool table has changed since.
+    /// True if the tool table has changed since the pause.
     bool areToolsChanged() const;
-    /// Moves that the planner has not done return to the queue; motion stops and drops them.
+    /// Returns moves that the planner has not done to the queue; motion stops and drops them.
     Result<> take_path_back();
-    /// The block where the program continues, and the state of the machine there.
+    /// The block at which the program continues, and the state of the machine there.
     RunPlace place() const;
     /// The approach from the current state.
     ApproachPlan plan_back() const;
 
   private:
     struct State {
-        geometry::Pose position;  ///< of the machine, when the axes were released
+        geometry::Pose position;  ///< position of the machine when the axes were released
         int line = 0;
         int tool = 0;             ///< tool in the spindle
         std::uint64_t tools = 0;  ///< checksum of the tool table

@@ -27,7 +27,7 @@ SequencerEvents ProgramActions::events() {
 
 bool ProgramActions::stop(const gcode::ProgramStop &stop, int line) {
     const ProgramRun &run = parts_.run;
-    // After the last block of an MDI line there is nothing to pause.
+    // There is nothing to pause after the last block of an MDI line.
     const bool is_last =
         run.kind() == RunKind::MDI && run.phase() == RunPhase::FINISHING && parts_.reader.queue().size() <= 1;
     if (is_last || (stop.optional && !parts_.world.isOptionalStopOn())) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a program does beside moves: messages, stops, offsets, planner changes and user M codes.
+// Actions of a program other than moves: messages, stops, offsets, planner changes and user M codes.
 #pragma once
 
 #include <cstdint>
@@ -38,18 +38,18 @@ class ProgramActions {
     ProgramActions &operator=(const ProgramActions &) = delete;
 
     SequencerEvents events();
-    /// M0, M1 or M60 in `line`. False: the program does not stop there.
+    /// M0, M1 or M60 in `line`. False: the program does not stop at it.
     bool stop(const gcode::ProgramStop &stop, int line);
     UserProgram &user_program() { return user_program_; }
 
     struct Stops {
-        int line = 0;  ///< of the last M0, M1 or M60
+        int line = 0;  ///< line of the last M0, M1 or M60
         std::uint64_t count = 0;
     };
     const Stops &stops() const { return stops_; }
     /// The active offsets, for clients.
     const OffsetsStatus &offsets() const { return offsets_; }
-    /// Once a cycle without a run: announced offsets are active at once.
+    /// Called once in each cycle without a run: announced offsets are active at once.
     void show_announced_offsets();
 
   private:

@@ -21,8 +21,8 @@ double safe_height(const RunParts &parts) {
     return known ? highest : -NO_LIMIT;
 }
 
-/// Tool change position when the machine comes from `at`. As M6: the quill, G30, then TOOL_CHANGE_POSITION,
-/// which the canon adds.
+/// Tool change position when the machine comes from `at`. As for M6: first the quill, then G30, then
+/// TOOL_CHANGE_POSITION, which the canon adds.
 geometry::Pose find_change_place(geometry::Pose at, ApproachPlan &plan, const RunParts &parts) {
     constexpr int G30 = 5181;
     const gcode::BeforeToolChange &wanted = parts.settings.interpreter.tool_change;
@@ -42,7 +42,8 @@ geometry::Pose find_change_place(geometry::Pose at, ApproachPlan &plan, const Ru
     return place.empty() ? at : place.back();
 }
 
-/// Fills in what does not depend on why the machine approaches: current tool and position, feed, moves.
+/// Fills in the data that do not depend on the reason of the approach: current tool and position, feed,
+/// moves.
 void complete(ApproachPlan &plan, const RunParts &parts) {
     constexpr double MM_PER_INCH = 25.4;
     const double units_per_mm = parts.settings.machine_units == gcode::LengthUnits::MM ? 1 : 1 / MM_PER_INCH;
@@ -66,7 +67,7 @@ Result<Progress> ProgramResume::recover(mailbox::Serial command) {
                               : std::unexpected(opened.error());
 }
 
-/// Checks before the calculation.
+/// --- checks before the calculation
 Result<> ProgramResume::check_recovery() const {
     const auto offer = parts_.recovery.offer();
     if (!offer.has_value()) {
@@ -133,7 +134,7 @@ Result<Progress> ProgramResume::release(mailbox::Serial command) {
             return std::unexpected(taken.error());
         }
     }
-    // The axes are released, but motion had not stopped yet and rejected it: tries again.
+    // The axes are released, but motion rejected the mode because it had not stopped; requests it again.
     const auto released = away ? Result<>{} : parts_.run.take(RunEvent::RELEASE);
     if (!released.has_value()) {
         return std::unexpected(released.error());
@@ -142,7 +143,7 @@ Result<Progress> ProgramResume::release(mailbox::Serial command) {
     return modes_.release_axes(command);
 }
 
-/// Resumes a program that cannot simply continue: the return path, and outputs to be switched on again.
+/// Resumes a program that needs preparation: a return path, and outputs to be switched on again.
 Result<Progress> ProgramResume::come_back() {
     const motion::Status &motion = parts_.port.motion();
     const bool away = parts_.run.hold() == Hold::AWAY;
@@ -196,7 +197,7 @@ Result<Progress> ProgramResume::calculate_again() {
 bool ProgramResume::step() {
     const ProgramRun &run = parts_.run;
     if (run.phase() == RunPhase::STARTING && run.isSearched()) {
-        // After an abort motion may still brake: a run begins at standstill.
+        // After an abort motion may still brake; a run begins at standstill.
         if (!parts_.port.motion().isInPosition) {
             return true;
         }
@@ -275,7 +276,7 @@ void ProgramResume::begin_with_tools_now() {
     begin_block_search(std::move(record), std::nullopt);
 }
 
-/// `reason` is a copy: the search that owns it ends here.
+/// `reason` is a copy, because the search that owns it ends here.
 void ProgramResume::give_up(std::string reason) {
     approach_.forget();
     if (parts_.reader.search() != nullptr) {
@@ -284,7 +285,7 @@ void ProgramResume::give_up(std::string reason) {
     parts_.port.post_error(reason);
     parts_.run.set_error({diagnostics::Severity::ERROR, {reason}});
     if (parts_.run.isHeld()) {
-        parts_.port.send(motion::Resume{});  // nothing is paused any more
+        parts_.port.send(motion::Resume{});  // nothing is paused now
     }
     end_.finish(Progress::FAILED, reason);
 }
@@ -300,7 +301,7 @@ void ProgramResume::take_found() {
     }
 }
 
-/// An offset that the program has not taken from the table does not change.
+/// True if an offset that the program has not read from the table remains unchanged.
 bool ProgramResume::isOldOffsetKept() const {
     const FoundModes found = parts_.reader.search()->found();
     const int index = found.tool > 0 ? parts_.tools.index_of_tool(found.tool) : -1;
@@ -332,7 +333,7 @@ void ProgramResume::propose(ApproachPlan plan) {
                      fmt::format("to continue at line {}: {}; resume confirms it, abort drops it", plan.line,
                                  way.empty() ? "nothing has to be changed" : way));
     approach_.propose(std::move(plan), parts_.port.now_ns());
-    parts_.sequencer.set_stepping(false);  // a step that was requested meanwhile ends here
+    parts_.sequencer.set_stepping(false);  // a step that was requested in the meantime ends here
 }
 
 Result<Progress> ProgramResume::confirm(std::uint64_t number) {
@@ -354,7 +355,7 @@ Result<Progress> ProgramResume::confirm(std::uint64_t number) {
     return Progress::DONE;
 }
 
-/// The calls of the approach come first, then those of the program from the line on.
+/// The calls of the approach come first, then the calls of the program from the line on.
 void ProgramResume::go_on(const ApproachPlan &plan) {
     auto last = gcode::Step::OK;
     if (parts_.reader.search() != nullptr) {
@@ -371,7 +372,7 @@ void ProgramResume::accept_search() {
     const bool recovery = parts_.run.isRecovery();
     if (recovery) {
         const StartRecord &record = reader.recorded();
-        if (parts_.run.kind() == RunKind::RECOVERY) {  // as they were before the interruption
+        if (parts_.run.kind() == RunKind::RECOVERY) {  // as before the interruption
             parts_.world.set_block_delete(record.isBlockDelete);
             parts_.world.set_optional_stop(record.isOptionalStop);
         }

@@ -163,7 +163,7 @@ Result<Progress> RunController::run_tap(mailbox::Serial command, const RigidTapM
     return started;
 }
 
-/// Without a run there is nothing to do, as in LinuxCNC: screens and buttons send it without checking.
+/// Without a run it has no effect, as in LinuxCNC, because screens and buttons send it without checking.
 Result<Progress> RunController::pause() {
     if (!parts_.run.isRunning()) {
         return Progress::DONE;
@@ -180,7 +180,7 @@ Result<Progress> RunController::stop_optionally() {
     return hold_motion();
 }
 
-/// Pauses on its path; a program that has left its path has none.
+/// Pauses a program on its path. A program whose axes have left the path cannot be paused again.
 Result<Progress> RunController::hold_motion() {
     if (parts_.run.hold() != Hold::AWAY && parts_.run.hold() != Hold::PROPOSED) {
         parts_.port.send(motion::Pause{});
@@ -189,7 +189,7 @@ Result<Progress> RunController::hold_motion() {
 }
 
 Result<Progress> RunController::step_first() {
-    static_cast<void>(parts_.run.take(RunEvent::PAUSE));  // it begins paused, and steps from there
+    static_cast<void>(parts_.run.take(RunEvent::PAUSE));  // the run begins paused and steps from this state
     const auto taken = parts_.run.take(RunEvent::STEP);
     if (!taken.has_value()) {
         return std::unexpected(taken.error());
@@ -256,7 +256,7 @@ void RunController::apply_rights() {
 }
 
 bool RunController::begin_reading() {
-    // After an abort motion may still brake: a run begins at standstill.
+    // After an abort motion may still brake; a run begins at standstill.
     if (!parts_.port.motion().isInPosition) {
         return false;
     }
@@ -342,7 +342,8 @@ void RunController::execute() {
         sequencer.step(parts_.port.now_ns());
     }
     parts_.reader.follow(sequencer);
-    // The step that executes the last block ends the program: there is no block left to pause before.
+    // The step that executes the last block ends the program, because there is no block left before which it
+    // could pause.
     const bool executed = run.phase() == RunPhase::FINISHING && sequencer.isIdle();
     const bool is_written = sequencer.logs().isSettled() && parts_.tools.isSettled();
     if (executed && is_written && !run.isHeld() && !run.hasFailed()) {

@@ -8,14 +8,14 @@
 
 namespace mw::task {
 
-/// At most one run. The interpreter reads ahead of the sequencer within limits; a paused run executes
-/// nothing. One thread; does not block.
+/// At most one run at a time. The interpreter reads ahead of the sequencer within limits; a paused run
+/// executes nothing. One thread; does not block.
 class RunController {
   public:
     RunController(const RunParts &parts, WorkEnd &end) : parts_(parts), end_(end) {}
 
-    /// Loads the parameters, and gives the interpreter the state of the machine. Errors name file, line and
-    /// column.
+    /// Loads the parameters, and passes the state of the machine to the interpreter. Errors name file, line
+    /// and column.
     Result<> load();
     /// Reports an interrupted program, and runs the start-up code.
     Result<> begin_interpreter();
@@ -25,50 +25,50 @@ class RunController {
     // Commands.
     Result<Progress> open(const std::string &path);
     Result<Progress> close();
-    /// Discards what was read ahead, and closes the program.
+    /// Discards blocks that were read ahead, and closes the program.
     Result<Progress> reset_interpreter();
     /// Starts the open program; `line` 0: at its first line.
     Result<Progress> run_program(mailbox::Serial command, int line);
-    /// Starts the line, or queues it while another one runs.
+    /// Starts the line, or queues it while another line runs.
     Result<Progress> run_line(mailbox::Serial command, const std::string &line);
-    /// For taps sent by clients, until it is set again or the work is aborted.
+    /// For taps sent by clients, until the next call or an abort.
     Result<Progress> set_spindle_sync(const SetSpindleSync &sync);
     /// As G33.1 with the pitch of the last SetSpindleSync: an MDI line whose end is already known.
     Result<Progress> run_tap(mailbox::Serial command, const RigidTapMove &tap);
-    /// The machine may run programs and MDI lines.
+    /// An error if the machine may not run programs and MDI lines.
     Result<> check_can_run() const;
-    /// Accepts a run, which begins when the axes are stopped. `line`: of MDI.
+    /// Accepts a run, which begins when the axes are stopped. `line` is that of MDI.
     Result<Progress> begin(RunKind kind, mailbox::Serial command, mailbox::Authority rights,
                            const std::string &line = {});
     Result<Progress> pause();
-    /// As M1 at this point.
+    /// Stops as M1 at this point.
     Result<Progress> stop_optionally();
     /// Executes one block, or one move of a paused planner.
     Result<Progress> step_once();
-    /// The same for a program that begins with it.
+    /// As step_once(), for a program that begins with this step.
     Result<Progress> step_first();
-    /// Continues a run that needs nothing else before.
+    /// Resumes a run that needs no preparation.
     Result<Progress> resume();
 
-    // Steps of a cycle.
+    // --- steps of a cycle
     /// Reports files and disks that fail or do not answer.
     void check_files();
     /// Gives the interpreter the rights of the run.
     void apply_rights();
     /// Begins a run at its first line, and reads its blocks.
     void read_ahead();
-    /// Executes what was read; ends the run after its last block.
+    /// Executes the blocks that were read; ends the run after its last block.
     void execute();
-    /// The same while the interpreter is in a long call.
+    /// As execute(), while the interpreter is in a long call.
     void execute_during_call();
-    /// The interpreter has made a step.
+    /// Called after a step of the interpreter.
     void take_step(gcode::Step result);
 
   private:
     bool isReadingDue() const;
-    /// False before the axes are stopped.
+    /// Begins to read the program. False while the axes are not stopped.
     bool begin_reading();
-    /// The interpreter has waited for the machine, which has executed all before.
+    /// Continues after a waiting point, when the machine has executed everything before it.
     void continue_synched();
     Result<Progress> hold_motion();
 

@@ -6,15 +6,16 @@
 
 namespace mw::task {
 
-/// A program will start; the interpreter has been synched and has read none of it.
+/// Called before a program starts. The interpreter has been synched and has read nothing of it.
 void prepare_journal(const RunParts &parts);
-/// It starts with this block.
+/// Called with the block at which the program starts.
 void begin_journal(const RunParts &parts, std::uint32_t first_block);
-/// After each step of the interpreter.
+/// Called after each step of the interpreter.
 void journal_doubt(const RunParts &parts);
-/// Once a cycle: reports problems and shows the interrupted program to clients.
+/// Called once in each cycle: reports problems and shows the interrupted program to clients.
 void show_journal(const RunParts &parts, RecoveryStatus &status);
-/// Once a cycle, after the status: clients that survive a crash have seen at least the state in the journal.
+/// Called once in each cycle after the status, so that clients that survive a crash have seen at least the
+/// state in the journal.
 void journal_place(const RunParts &parts);
 
 }  // namespace mw::task

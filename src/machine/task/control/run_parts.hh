@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the parts that run programs share.
+// Objects shared by the parts that run programs.
 #pragma once
 
 #include "machine/task/control/long_calls.hh"
@@ -11,7 +11,7 @@
 
 namespace mw::task {
 
-/// Each object keeps its own state; all outlive their users.
+/// Each object has its own state; all outlive their users.
 struct RunParts {
     const Settings &settings;
     MachinePort &port;
@@ -36,7 +36,7 @@ struct RunParts {
         world.show(machine);
         reader.synch(machine.position);
     }
-    /// The blocks of another run follow.
+    /// Called before the blocks of another run.
     void begin_blocks() const {
         reader.canon().reset();
         sequencer.forget_place();

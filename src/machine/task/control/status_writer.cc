@@ -8,7 +8,8 @@ namespace mw::task {
 namespace {
 
 /// Modal codes of the current move, which comes from `source`; without a run those of the interpreter.
-/// `executed`: it is the block to which an abort would return, not an earlier one of a reverse run.
+/// `executed`: the move belongs to the block to which an abort would return, not to an earlier block of a
+/// reverse run.
 gcode::ActiveCodes codes_in_force(const ProgramReader &reader, const ProgramRun &run,
                                   const motion::SourceTag &source, bool executed) {
     const ModalCodeHistory &trail = reader.codes();
@@ -21,7 +22,7 @@ gcode::ActiveCodes codes_in_force(const ProgramReader &reader, const ProgramRun 
     if (read_ahead) {
         return trail.at(source.block, line);
     }
-    // An MDI line has no number, nor has the start-up code.
+    // MDI lines and the start-up code have no number.
     const gcode::ActiveCodes read = reader.interpreter().active_codes();
     return numbered(read, run.kind() != RunKind::MDI && !trail.isEmpty() ? read.g[0] : 0);
 }
@@ -121,7 +122,7 @@ void StatusWriter::write_during_call() {
     write_states();
     write_devices();
     write_sequencer();
-    if (run_.calls.isStopped()) {  // the run has ended, although the call still has to end
+    if (run_.calls.isStopped()) {  // the run has ended, although its call has not ended yet
         status_.task.interp_state = InterpState::IDLE;
         status_.task.exec_state = ExecState::DONE;
         status_.task.isPaused = status_.task.isStoppedByProgram = false;

@@ -6,14 +6,15 @@
 
 namespace mw::task {
 
-/// One status a cycle. One thread.
+/// One status in each cycle. One thread.
 class StatusWriter {
   public:
     StatusWriter(const RunParts &run, const Controllers &parts) : run_(run), parts_(parts) {}
 
-    /// At the end of a cycle.
+    /// Called at the end of a cycle.
     void write();
-    /// At the end of a cycle during a long call: what needs neither the interpreter nor the tool data.
+    /// Called at the end of a cycle during a long call: writes the parts that need neither the interpreter
+    /// nor the tool data.
     void write_during_call();
     const Status &status() const { return status_; }
 

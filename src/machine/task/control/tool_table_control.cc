@@ -10,7 +10,8 @@
 namespace mw::task {
 namespace {
 
-/// Cutting time and length of the tool in the spindle since that status: axes at feed while a spindle ran.
+/// Cutting time and length of the tool in the spindle since that status: time with axes at feed while a
+/// spindle runs.
 tools::CutLife cut_since(const Status &status, std::int64_t now_ns) {
     constexpr double S_PER_NS = 1e-9;
     const double elapsed_s = static_cast<double>(now_ns - status.time_ns) * S_PER_NS;
@@ -118,7 +119,7 @@ Result<> ToolTableControl::apply(const RemoveTool &order) {
     return tools.remove(index);
 }
 
-/// The table if it has changed since the last call.
+/// Publishes the table if it has changed since the last call.
 void ToolTableControl::publish_table() {
     const std::uint64_t version = parts_.tools.version();
     if (version == shown_version_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tool data for clients: reloads, edits, and the table and tool that they see.
+// The tool data for clients: reloads, edits, and the published table and tool.
 #pragma once
 
 #include "machine/task/control/run_parts.hh"
@@ -13,12 +13,13 @@ class ToolTableControl {
 
     /// Ends when the table is read.
     Result<Progress> reload(mailbox::Serial command);
-    /// Changes the data of a tool, adds one, or removes one that nothing uses; only the changer moves tools.
+    /// Changes the data of a tool, adds a tool, or removes an unused tool. Only the changer moves tools.
     template <OneOf<SetToolEntry, AddTool, RemoveTool> Edit>
     Result<> edit(const Edit &command) {
         return parts_.calls.beside([&] { return apply(command); });
     }
-    /// Once a cycle: a table that was read or changed, and the wear of the tool since the status `last`.
+    /// Called once in each cycle: publishes a table that was read or changed, and adds the wear of the tool
+    /// since the status `last`.
     void step(const Status &last);
     void show(ToolStatus &status) const;
 
@@ -30,8 +31,8 @@ class ToolTableControl {
 
     const RunParts &parts_;
     std::uint64_t shown_version_ = 0;
-    mailbox::Serial reload_ = 0;  ///< the active LoadToolTable; 0: none
-    int prepared_index_ = -1;     ///< of the tool that T has prepared; 0 (of a fixed changer) and -1: none
+    mailbox::Serial reload_ = 0;  ///< the LoadToolTable being executed; 0: none
+    int prepared_index_ = -1;     ///< index of the tool that T has prepared; 0 (fixed changer) and -1: none
 };
 
 }  // namespace mw::task

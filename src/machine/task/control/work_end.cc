@@ -32,13 +32,14 @@ void WorkEnd::finish(Progress progress, const std::string &reason) {
 
 void WorkEnd::fail_run(diagnostics::Diagnostic what, AbortReason reason) {
     ProgramRun &run = parts_.run;
-    if (run.phase() == RunPhase::CLEANING) {  // no clean-up after a clean-up
+    if (run.phase() == RunPhase::CLEANING) {  // a clean-up is not followed by another one
         parts_.sequencer.abort(static_cast<int>(AbortReason::EXECUTION_ERROR));
         run.change(RunEvent::CLEANED);
         parts_.port.post_error(on_abort_.told(what.str()));
         return;
     }
-    // The operator has just typed the MDI line: its error needs no position, and clients compare the texts.
+    // The operator has just typed the MDI line, so its error needs no position, and clients compare the
+    // texts.
     const bool typed = run.kind() == RunKind::MDI;
     parts_.port.post_error(typed ? what.what.message : what.str());
     if (typed && !what.what.hint.empty()) {
@@ -91,7 +92,7 @@ void WorkEnd::stop_run(const std::string &reason, Stopped how) {
 }
 
 void WorkEnd::abort_work(AbortReason reason) {
-    // A machine that is switched off has usually been stopped for another reason before: that clean-up
+    // A machine that is switched off has usually been stopped for another reason before; that clean-up
     // continues.
     const bool following = reason == AbortReason::STATE_NOT_ON && on_abort_.isCleanedUp();
     parts_.port.refuse(parts_.mdi.drop(), OVERTAKEN);
@@ -104,7 +105,7 @@ void WorkEnd::abort_work(AbortReason reason) {
     switch_off_outputs();
     parts_.run.forget_failure();
     hooks_.aborted();
-    parts_.synch_interpreter();  // spindles and coolant are off
+    parts_.synch_interpreter();  // spindles and coolant are off now
     if (!following) {
         clean_up(reason);
     }

@@ -12,40 +12,40 @@
 
 namespace mw::task {
 
-/// How a run ends that is not executed to its end.
+/// Result of a run that is not executed to its end.
 enum class Stopped : std::uint8_t {
-    INTERRUPTED,  ///< not requested: the program may be resumed
+    INTERRUPTED,  ///< not requested by an operator: the program may be resumed
     ON_REQUEST,
 };
 
-/// Calls of other parts whose work ends together with the run.
+/// Functions of other parts that are called when a run ends.
 struct WorkEndHooks {
-    std::function<void()> braking;  ///< motion stops now
-    std::function<void()> aborted;  ///< their requests are abandoned
+    std::function<void()> braking;  ///< called when motion begins to stop
+    std::function<void()> aborted;  ///< called to abandon their requests
 };
 
-/// After an abort nothing that was requested before moves the machine, and modes and offsets are those of the
-/// executed block. One thread; does not block.
+/// After an abort no earlier request moves the machine, and modes and offsets are those of the executed
+/// block. One thread; does not block.
 class WorkEnd {
   public:
     WorkEnd(const RunParts &parts, WorkEndHooks hooks);
 
-    /// The run is executed, or has failed.
+    /// Called when the run is executed or has failed.
     void finish(Progress progress, const std::string &reason);
     /// Reports the error, ends the run and aborts all work.
     void fail_run(diagnostics::Diagnostic what, AbortReason reason);
-    /// Posts an error of motion; one that belongs to the run ends it.
+    /// Posts an error of motion. If the error belongs to the run, the run ends.
     void report(const std::string &text, const motion::SourceTag &source, bool of_run, AbortReason reason);
-    /// Ends the run, and stops axes and spindles. During a long call the latter happens at once; the run
-    /// ends, and modes return to those of the executed block, after it.
+    /// Ends the run, and stops axes and spindles. During a long call axes and spindles stop at once; the end
+    /// of the run and the return to the modes of the executed block follow after the call.
     void stop_work(const std::string &why, AbortReason reason, Stopped how = Stopped::INTERRUPTED);
-    /// Starts [RS274NGC]ON_ABORT_COMMAND. Calls before its error are still executed.
+    /// Starts [RS274NGC]ON_ABORT_COMMAND. If it has an error, the calls before the error are still executed.
     void clean_up(AbortReason reason);
-    /// Work was requested since the last abort.
+    /// Called when work was requested after the last abort.
     void note_work() { on_abort_.note_work(); }
 
-    /// Once a cycle: ends a run with a failed action, and one that motion does not accept; continues the
-    /// clean-up.
+    /// Called once in each cycle: ends a run with a failed action or one that motion does not accept;
+    /// continues the clean-up.
     void step();
 
     std::uint64_t programs_ended() const { return programs_ended_; }

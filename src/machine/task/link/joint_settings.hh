@@ -22,8 +22,8 @@ struct JointsNow {
     bool homing = false;
 };
 
-/// True if motion accepts all of `changes`, and the limits of each joint leave it a range. Checked before the
-/// first one is sent, so that a command changes all of its settings or none.
+/// Checks whether motion accepts all of `changes` and the limits of each joint leave a range. Called before
+/// the first change is sent, so that a command changes all of its settings or none.
 Result<> check_settings(const std::vector<motion::SetParameter> &changes, const motion::Settings &current,
                         const JointsNow &joints);
 

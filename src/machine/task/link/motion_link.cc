@@ -11,17 +11,17 @@ namespace {
 
 /// Maximum number of moves sent and not complete, for the planner's look-ahead.
 constexpr std::uint32_t PATH_WINDOW = 3000;
-/// A servo thread that is interrupted within a write for longer has died; its death is reported elsewhere.
+/// A servo thread whose write is interrupted for longer counts as dead. Its death is reported elsewhere.
 constexpr std::chrono::milliseconds PATIENCE{20};
 /// Servo cycles from an output to a linked input, through one or two components.
 constexpr std::uint64_t ROUND_TRIP_CYCLES = 4;
-/// Table points in transit; the rest of the channel is for everything else.
+/// Table points in transit; the rest of the channel is for other commands.
 constexpr std::size_t TABLE_WINDOW = 256;
 
 }  // namespace
 
 MotionLink::MotionLink(motion::Channels &channels) : channels_(channels) {
-    copy_.value.isInPosition = false;  // until motion reports it
+    copy_.value.isInPosition = false;  // until motion reports the position
     if (read_patiently(channels_.status, copy_, PATIENCE)) {
         epoch_ = copy_.value.epoch;
     }
@@ -29,7 +29,7 @@ MotionLink::MotionLink(motion::Channels &channels) : channels_(channels) {
 
 MotionLink::News MotionLink::update() {
     News news;
-    // A realtime side that has died during a write publishes nothing more.
+    // A realtime side that died during a write publishes nothing more.
     fresh_ = read_patiently(channels_.status, copy_, PATIENCE) ? copy_.fresh : 0;
     channels_.task_loops.fetch_add(1, std::memory_order_relaxed);
     take_answers(news);
@@ -80,7 +80,7 @@ void MotionLink::follow_outputs() {
     }
 }
 
-/// The first rejection of a table, or any other rejection.
+/// True for the first rejection of a table, and for any other rejection.
 bool MotionLink::isToldRefusal(const motion::Answer &answer) {
     const bool rejected = answer.kind == motion::AnswerKind::REFUSED;
     const auto point = std::find(table_pending_.begin(), table_pending_.end(), answer.id);
@@ -167,7 +167,7 @@ bool MotionLink::isPathComplete() const {
 void MotionLink::abort() {
     ++epoch_;
     send(motion::Abort{epoch_});
-    // All earlier commands are stale: their answers are not awaited.
+    // All earlier commands are stale, so their answers are not awaited.
     aborted_id_ = last_path_id_;
     sources_.clear();
     completed_id_ = std::max(completed_id_, last_path_id_);

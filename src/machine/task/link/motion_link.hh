@@ -18,25 +18,25 @@ class MotionLink {
 
     struct Refusal {
         motion::Answer answer;
-        motion::SourceTag source;  ///< of a path command; line 0 for other commands
+        motion::SourceTag source;  ///< source of a path command; line 0 for other commands
         bool is_table = false;     ///< a point of a screw table
     };
     struct News {
-        std::vector<Refusal> refused;  ///< rejected commands; STALE ones belong to aborted work
+        std::vector<Refusal> refused;  ///< rejected commands; STALE commands belong to aborted work
         std::vector<motion::Fault> faults;
     };
-    /// Reads status, answers and faults, and signals to the realtime side that task is alive. Once a task
-    /// cycle.
+    /// Reads status, answers and faults, and signals to the realtime side that task is alive. Called once in
+    /// each task cycle.
     News update();
 
     const motion::Status &status() const { return copy_.value; }
     /// Parts of the status (motion::status_part) that the last update has received.
     PartMask fresh_parts() const { return fresh_; }
 
-    /// Queues an immediate command; they are sent in order as the channel has space.
+    /// Queues an immediate command. Commands are sent in order when the channel has space.
     motion::CommandId send(motion::CommandBody body);
-    /// Queues the points of tables: all other commands go first. The first rejected point ends its table and
-    /// is reported once.
+    /// Queues the points of tables, which are sent after all other commands. The first rejected point ends
+    /// its table and is reported once.
     void send_table(const std::vector<motion::LoadCompensation> &points);
     bool areTablesAnswered() const { return table_.empty() && table_pending_.empty(); }
     /// Sends a path command; false, and no effect, when the channel is full.
@@ -44,25 +44,25 @@ class MotionLink {
     /// True while another move may be sent without filling the planner's queue.
     bool hasPathRoom() const;
 
-    /// Tells the planner to run to the end of all moves sent.
+    /// Requests the planner to run to the end of all moves sent.
     void flush();
-    /// All moves sent are complete and the machine is stopped at their end.
+    /// True if all moves sent are complete and the machine is stopped at their end.
     bool isPathComplete() const;
-    /// The effect of digital and analog outputs on pins of motion has been received: the machine may have
-    /// another pose (motion.switchkins-type), and linked inputs have followed.
+    /// True if the effect of digital and analog outputs on pins of motion has been received: the machine may
+    /// have another pose (motion.switchkins-type), and linked inputs have changed.
     bool areOutputsSettled() const { return last_output_id_ == 0; }
     motion::CommandId last_path_id() const { return last_path_id_; }
     bool hasUnflushedPath() const { return last_path_id_ > flushed_id_; }
 
-    /// Stops all motion along the path and makes everything sent before it stale.
+    /// Stops all motion along the path. Everything sent before becomes stale.
     void abort();
     MotionWatch &watch() { return watch_; }
-    /// The last command of send() that motion has not answered; 0: none.
+    /// The last command from send() that motion has not answered; 0: none.
     motion::CommandId open_order() const { return pending_.empty() ? 0 : pending_.back(); }
     motion::Epoch epoch() const { return epoch_; }
 
-    /// An immediate command has been answered (done or rejected), and status() is later than that. In another
-    /// process the answer arrives before the snapshot of its cycle.
+    /// True if an immediate command has been answered (done or rejected), and status() is later than the
+    /// answer. In another process the answer arrives before the snapshot of its cycle.
     bool isAnswered(motion::CommandId id) const {
         return (pending_.empty() || id < pending_.front()) && id <= copy_.value.last_immediate_id;
     }
@@ -88,8 +88,8 @@ class MotionLink {
     int refused_table_ = -1;                        ///< joint of the rejected table
     motion::CommandId next_id_ = 1;
     motion::CommandId last_path_id_ = 0;  ///< last path command sent
-    motion::CommandId flushed_id_ = 0;    ///< the last Flush
-    motion::CommandId completed_id_ = 0;  ///< the last path command answered
+    motion::CommandId flushed_id_ = 0;    ///< the last Flush command
+    motion::CommandId completed_id_ = 0;  ///< the last path command that was answered
     motion::CommandId last_output_id_ =
         0;                              ///< output command whose effect may not have been received, 0: none
     std::uint64_t output_cycle_ = 0;    ///< cycle of the first status after its answer, 0: none yet

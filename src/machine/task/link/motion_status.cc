@@ -91,7 +91,7 @@ void tell(const motion::AxisStatus &axis, messages::AxisStatus &a) {
     a.max_limit = axis.max_limit;
 }
 
-/// Clears the row of an object that no longer exists. True: the row has changed.
+/// Clears the row of an object that does not exist. True if the row has changed.
 template <class From, class To>
 bool tell_row(const From &from, bool present, To &to) {
     const bool was_present = to.isPresent;

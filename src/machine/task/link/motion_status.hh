@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The status of motion, in the types of the vocabulary.
+// The status of motion, in the types of messages.
 #pragma once
 
 #include "messages/declarations/status_parts.hh"

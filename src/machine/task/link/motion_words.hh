@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Operators' commands that motion carries out by itself, as motion commands. Motion decides what each one
-// needs.
+// Converts operators' commands that motion executes by itself to motion commands. Motion decides whether each
+// one is possible.
 #pragma once
 
 #include "messages/declarations/command.hh"

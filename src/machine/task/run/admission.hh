@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which command is accepted in which situation: one table, from which docs/reference/states.md is made.
+// Accepted commands in each situation: one table, from which docs/reference/states.md is generated.
 #pragma once
 
 #include <string>
@@ -27,7 +27,7 @@ enum class Situation : std::uint8_t {
 };
 Situation situation_of(State state, Mode mode, const RunState &run);
 
-/// Null: accepted; else the reason.
+/// Null: accepted; else the reason for the rejection.
 const char *refusal_of(CommandClass what, Situation situation);
 /// As above, as a result.
 Result<> admit(CommandClass what, Situation situation);

@@ -11,7 +11,7 @@ namespace {
 
 /// Positions closer than this are equal. [machine units, degrees]
 constexpr double NEAR = 1e-7;
-/// Time after which a person has seen a proposal. [ns]
+/// Time after which it is assumed that a person has seen a proposal. [ns]
 constexpr std::int64_t SEEN_NS = 500000000;
 
 bool isSame(const geometry::Pose &a, const geometry::Pose &b) {

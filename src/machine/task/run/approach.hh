@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The approach to the place where a program continues: safe height first, then over the place, then down at
-// feed. Shown to a person, who confirms it.
+// The approach to the position where a program continues: first to the safe height, then above the position,
+// then down at feed. It is shown to a person, who confirms it.
 #pragma once
 
 #include <cstdint>
@@ -26,14 +26,15 @@ struct ApproachPlan {
     int line = 0;
     FoundModes modes;
     int tool_now = 0;
-    double feed = 0;      ///< of the last move [machine units/s]
+    double feed = 0;      ///< feed of the last move [machine units/s]
     geometry::Pose from;  ///< current position
     /// Moves of M6 before the changer starts; none if it does not move.
     std::vector<geometry::Pose> change_moves;
     std::vector<ApproachMove> moves;
 
     bool mustChangeTool() const { return modes.tool != tool_now; }
-    /// Calculates the moves: with a tool change, which ends at `changed_at`, up before it and again after it.
+    /// Calculates the moves. A tool change ends at `changed_at`, and the path goes up before it and again
+    /// after it.
     void find_way(double safe_z, const geometry::Pose &changed_at);
     /// True if the approach has steps that a person must confirm.
     bool isNeeded() const;
@@ -49,11 +50,11 @@ class Approach {
     /// Discards the proposal.
     void forget() { plan_.reset(); }
     bool isOpen() const { return plan_.has_value(); }
-    /// `number` 0: a client that does not use numbers; accepted only when a person has had time to see the
-    /// proposal.
+    /// `number` 0: a client that does not use numbers. It is accepted only when a person has had time to see
+    /// the proposal.
     Result<> check(std::uint64_t number, std::int64_t now_ns) const;
     const ApproachPlan &plan() const { return *plan_; }
-    /// Status for clients; `offsets` and `codes` are those at the line.
+    /// Shows the proposal to clients; `offsets` and `codes` are those at the line.
     void show(ApproachStatus &status, const OffsetsStatus &offsets, const CodesStatus &codes) const;
 
   private:

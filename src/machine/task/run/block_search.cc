@@ -48,7 +48,7 @@ BlockSearch::Outcome BlockSearch::refuse_before(const std::string &why) {
     return refuse(fmt::format("{}; the nearest line before it that can is {}", why, nearest));
 }
 
-/// Before the line is run.
+/// Called before the line is run.
 BlockSearch::Outcome BlockSearch::look_at_line() {
     const gcode::NextLine next = interpreter_.next_line();
     const bool matching = line_ > 0 && next.line == line_ && next.in_main_file;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Calculates a program up to the place where it starts, without moving anything.
+// Calculates a program up to the position where it starts, without moving anything.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@ class BlockSearch {
     enum class Outcome : std::uint8_t {
         GOING,
         FOUND,    ///< the next step of the interpreter runs the line
-        REFUSED,  ///< `refusal` has the reason and a line that is possible
+        REFUSED,  ///< `refusal` has the reason and a possible line
     };
     /// `line` of the main program, from 1.
     BlockSearch(gcode::Interpreter &interpreter, CanonSwitch &machine, const SearchMachine::Real &real,
                 int line);
-    /// Searches a block by its number in TaskCanon, from 1: calls from there on have reached the machine's
+    /// A block, by its number in TaskCanon, from 1. Calls from this block on have reached the machine's
     /// queue. The program starts with the state after `set_up`.
     struct Block {
         std::uint32_t number = 0;
@@ -46,7 +46,7 @@ class BlockSearch {
     /// Number of blocks before it.
     std::uint32_t blocks_before() const { return machine_.blocks(); }
     const ProgramChecksum &sum() const { return machine_.sum(); }
-    /// Result of the step that reached it; the machine must still execute its calls.
+    /// Result of the step that reached the position; the machine must still execute its calls.
     gcode::Step last_step() const { return last_step_; }
 
   private:
@@ -63,9 +63,9 @@ class BlockSearch {
     std::optional<std::uint64_t> calls_;
     gcode::Step last_step_ = gcode::Step::OK;
     bool was_threading_ = false;  ///< threading before that step
-    int last_possible_ = 0;       ///< last line where a start would have been possible, 0: none yet
+    int last_possible_ = 0;       ///< last line at which a start would have been possible, 0: none yet
     int first_behind_ = 0;        ///< the first line after the target that is reached, 0: none
-    std::string doubt_;           ///< including its line
+    std::string doubt_;           ///< includes its line
     std::string refusal_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The canon of the interpreter: the machine, or temporarily one that is only calculated.
+// The canon of the interpreter: the machine, or temporarily a calculation.
 #pragma once
 
 #include <functional>
@@ -23,21 +23,21 @@ class CanonSwitch final : public gcode::MachineCanon,
         gcode::World &world;
         gcode::ToolSource &tools;
         gcode::ParameterSource &parameters;
-        /// The search has reached its target: calls go to `canon` from now on.
+        /// Called when the search has reached its target: later calls go to `canon`.
         std::function<void(const SearchMachine &)> begin_passing;
     };
     explicit CanonSwitch(Real real) : real_(std::move(real)) {}
 
-    /// Sends all calls to `search`; null: to the machine again. From block `first` of the program on (from 1;
-    /// 0: none) calls also reach the machine's canon.
+    /// Sends all calls to `search`; null: to the machine again. From block `first` of the program (from 1; 0:
+    /// none) calls also reach the machine's canon.
     void set_search(SearchMachine *search, std::uint32_t first = 0) {
         search_ = search;
         first_ = first;
         passing_ = false;
     }
-    /// That block has been reached.
+    /// True after that block has been reached.
     bool isPassing() const { return passing_; }
-    /// A value that the program has read from the running machine since forget_doubt(), and that cannot be
+    /// A value that the program has read from the running machine since forget_doubt() and that cannot be
     /// calculated again; empty: none.
     const std::string &doubt() const { return doubt_; }
     void forget_doubt() { doubt_.clear(); }

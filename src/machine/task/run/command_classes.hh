@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The class of each command: one row of the table in admission.hh decides for all commands of a class.
+// The class of each command. One row of the table in admission.hh applies to all commands of a class.
 #pragma once
 
 #include <algorithm>
@@ -75,7 +75,7 @@ template <class T>
 concept Release = OneOf<T, ReleaseAxes>;
 template <class T>
 concept OfTheMailbox = OneOf<T, ClaimOperation, HandOverOperation, ReleaseOperation>;
-/// Internal actions of motion (machine/task/link/motion_words.hh).
+/// Commands for the internal use of motion (machine/task/link/motion_words.hh).
 template <class T>
 concept CarriedOutByMotion =
     OneOf<T, SetFeedOverride, SetRapidOverride, SetSpindleOverride, SetMaxVelocity, EnableFeedOverride,
@@ -90,7 +90,7 @@ concept AnyTime =
 
 }  // namespace command_lists
 
-/// A command in none of the lists, or in several, does not compile.
+/// A command that is in none of the lists, or in several, does not compile.
 template <class T>
 constexpr CommandClass class_of() {
     using namespace command_lists;
@@ -118,8 +118,8 @@ constexpr CommandClass class_of() {
     return static_cast<CommandClass>(std::find(IS_IN.begin(), IS_IN.end(), true) - IS_IN.begin());
 }
 
-/// Class of a command with its values: a spindle at 0 rev/min is a stop, and selecting the current mode
-/// changes nothing.
+/// Class of a command with its values. A spindle command with 0 rev/min is a stop, and selecting the current
+/// mode changes nothing.
 CommandClass class_of(const Command &command, messages::Mode mode);
 
 }  // namespace mw::task

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A call into the interpreter that may take long: a file on a slow disk, a script. While it does, another
-// thread carries out stops.
+// A call of the interpreter that may take long: a file on a slow disk, a script. Meanwhile another thread
+// executes stops.
 #pragma once
 
 #include <atomic>
@@ -8,12 +8,12 @@
 
 namespace mw::task {
 
-/// Two threads share task. Its own thread runs Task::step(). The other one may run Task::step_apart(), and
-/// use task, only between take() and give_back(), and take() succeeds only while the first one is in a call.
-/// So at most one thread uses task at any time, apart from the call itself.
+/// Two threads share task. Task's own thread runs Task::step(). The other thread may use task and run
+/// Task::step_apart() only between take() and give_back(). take() succeeds only while task's own thread is in
+/// a call. So apart from the call itself only one thread uses task at any time.
 class LongCall {
   public:
-    /// Task's own thread: around each call that may take long. Calls do not nest.
+    /// For task's own thread: around each call that may take long. Calls are not nested.
     void begin() noexcept { state_.store(State::CALLING, std::memory_order_release); }
     /// Waits while the other thread uses task.
     void end() noexcept {
@@ -24,7 +24,7 @@ class LongCall {
         }
     }
 
-    /// The other thread: true when the first one is in a call, which cannot end before give_back().
+    /// For the other thread: true if task's own thread is in a call, which cannot end before give_back().
     bool take() noexcept {
         State expected = State::CALLING;
         return state_.compare_exchange_strong(expected, State::TAKEN, std::memory_order_acq_rel);

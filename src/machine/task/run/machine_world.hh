@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine from the view of programs.
+// The machine as seen by programs.
 #pragma once
 
 #include "gcode/interpreter/world.hh"
@@ -9,7 +9,7 @@
 
 namespace mw::task {
 
-/// Gives the interpreter the last snapshot. One thread.
+/// Passes the last snapshot to the interpreter. One thread.
 class MachineWorld final : public gcode::World {
   public:
     struct Machine {

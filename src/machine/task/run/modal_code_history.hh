@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The modal codes of blocks that are read but not done: programs are read ahead, while clients see the codes
+// The modal codes of blocks that are read but not done. Programs are read ahead, while clients see the codes
 // of the current move.
 #pragma once
 
@@ -13,10 +13,10 @@ namespace mw::task {
 /// One thread.
 class ModalCodeHistory {
   public:
-    /// Notes the codes after the block with this number was read. Blocks come in order; of a block that is
-    /// noted again while it waits for the machine, the first note counts.
+    /// Stores the codes after the block with this number was read. Blocks arrive in order. If a block is
+    /// noted again while it waits for the machine, its first codes are kept.
     void note(std::uint32_t block, const gcode::ActiveCodes &codes);
-    /// Codes at a block; at least one must have been noted. `line` replaces the sequence numbers.
+    /// Codes at a block; codes of at least one block must be stored. `line` replaces the sequence numbers.
     gcode::ActiveCodes at(std::uint32_t block, int line) const;
     bool isEmpty() const { return entries_.empty(); }
     void clear() { entries_.clear(); }

@@ -10,7 +10,7 @@
 namespace mw::task {
 namespace {
 
-/// Maximum number of blocks of the command, which is read at once, so that it cannot be lost.
+/// Maximum number of blocks of the command. It is read at once, so that it cannot be lost.
 constexpr int MAX_BLOCKS = 10000;
 
 }  // namespace

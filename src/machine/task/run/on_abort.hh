@@ -17,13 +17,12 @@ class OnAbort {
 
     bool isAsked() const { return !command_.empty(); }
     /// Reads the command to its end into the reader's queue; its calls are executed when the machine is
-    /// stopped. The reader must have been synched. On an error, which is returned, earlier calls stay in the
-    /// queue.
+    /// stopped. The reader must have been synched. After an error, earlier calls remain in the queue.
     Result<> read(ProgramReader &reader, AbortReason reason) const;
     /// Message for the operator about an error in the command.
     std::string told(const std::string &trouble) const;
 
-    /// Nothing has run since the last abort.
+    /// True if nothing has run since the last abort.
     bool isCleanedUp() const { return cleaned_up_; }
     void note_abort() { cleaned_up_ = true; }
     void note_work() { cleaned_up_ = false; }
@@ -33,7 +32,8 @@ class OnAbort {
     bool cleaned_up_ = false;
 };
 
-/// True for calls that are not permitted after an abort: all that move, start, or wait for a person.
+/// True for calls that are not permitted after an abort: calls that move, start something, or wait for a
+/// person.
 bool isForbiddenAfterAbort(const gcode::MachineCall &call);
 
 }  // namespace mw::task

@@ -9,8 +9,8 @@
 
 namespace mw::task {
 
-/// Writes parameters in order, so that an older text never replaces a newer one; the previous content is in
-/// its .bak file. One thread.
+/// Writes parameters in order, so that an older text never replaces a newer text. The previous content is in
+/// the .bak file. One thread.
 class ParameterFile {
   public:
     /// `path` empty: parameters are only in memory. Without a writer, or with a plug-in that stores its own
@@ -18,11 +18,11 @@ class ParameterFile {
     ParameterFile(std::string path, ProgramReader &reader, journal::Writer *writer)
         : path_(std::move(path)), reader_(reader), writer_(writer) {}
 
-    /// The file has been read: the current parameters are those of the file.
+    /// Called when the file has been read: the current parameters are those of the file.
     void note_loaded() { kept_ = reader_.parameter_text(); }
-    /// Has them written soon if they have changed; does not wait.
+    /// Requests a write if the parameters have changed; does not wait.
     void keep();
-    /// Writes them and waits: a long call.
+    /// Writes the parameters and waits; a long call.
     Result<> save();
 
   private:

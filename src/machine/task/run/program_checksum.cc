@@ -92,7 +92,7 @@ void ProgramChecksum::add(const gcode::MachineCall &call) {
                             gcode::SwitchFeedHold, gcode::SwitchAdaptiveFeed> auto &device) {
                 whole(device.isOn ? 1 : 0);
             },
-            // Only the type of these calls counts.
+            // Only the type of these calls is included.
             [](const OneOf<gcode::UsePlanner, gcode::SetSpindleMode, gcode::OrientSpindle,
                            gcode::WaitOrientComplete, gcode::ChangeTool, gcode::ReloadTools,
                            gcode::SwitchSpeedOverride, gcode::WaitInput, gcode::ProgramStop,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A checksum of the commands of a program: two runs with the same checksum have sent the same commands.
+// A checksum of the commands of a program. Two runs with the same checksum have sent the same commands.
 #pragma once
 
 #include <cstdint>

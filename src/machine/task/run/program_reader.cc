@@ -54,7 +54,7 @@ ProgramReader::ProgramReader(const Sources &sources, Setup setup)
                    canon_.marks().begin(search.sum());
                }}),
       frame_(switch_, setup_.units), executed_frame_(frame_) {
-    // On a machine #<_task> and self.task of scripts are set, and M99 in the main program restarts it.
+    // On a machine, #<_task> and self.task of scripts are set, and M99 in the main program restarts it.
     setup_.interpreter.is_task = true;
     auto rs274 = std::make_unique<gcode::Interpreter>(frame_, switch_, switch_, switch_, setup_.interpreter);
     rs274_ = rs274.get();
@@ -83,7 +83,7 @@ std::string ProgramReader::parameter_text() const {
     return rs274_ != nullptr ? rs274_->read_ahead().parameter_text() : std::string();
 }
 
-/// Calls that report the machine's state are not part of a block read ahead.
+/// Calls that report the machine's state do not belong to a block read ahead.
 void ProgramReader::synch(const geometry::Pose &position) {
     canon_.set_position(position);
     frame_.set_position(position);
@@ -130,7 +130,7 @@ gcode::Step ProgramReader::execute(std::string_view line) {
     return result;
 }
 
-/// A block without calls also keeps its place in the order of execution.
+/// Gives a block without calls its position in the order of execution.
 void ProgramReader::keep_place(const gcode::BlockRef &block) {
     const bool silent = !canon_.isAsking() && !interp_->isMoveHeld();
     if (silent && rs274_ != nullptr && search_ == nullptr && !rs274_->read_ahead().isLineEmpty()) {
@@ -138,8 +138,8 @@ void ProgramReader::keep_place(const gcode::BlockRef &block) {
     }
 }
 
-/// A move delayed by cutter compensation is executed with the step that releases it: the changes of this step
-/// count from there on.
+/// A move delayed by cutter compensation is executed with the step that releases it, so the changes of that
+/// step count from there.
 void ProgramReader::note_read() {
     if (rs274_ == nullptr || search_ != nullptr) {
         return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The interpreter of a machine with its parameters, and the queue that it writes.
+// The interpreter of a machine with its parameters, and the queue to which it writes.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ struct KeptState {
     std::optional<gcode::MachineFrame> frame;
 };
 
-/// One thread. step(), execute(), open() and step_search() may wait for files and scripts: meanwhile another
-/// thread may use task (LongCall), and uses only call().
+/// One thread. step(), execute(), open() and step_search() may wait for files and scripts. Meanwhile another
+/// thread may use task (LongCall); of the reader it uses only call().
 class ProgramReader {
   public:
     struct Setup {
@@ -52,22 +52,23 @@ class ProgramReader {
     Result<> save_parameters() const;
     /// Content of the parameter file; empty with a plug-in.
     std::string parameter_text() const;
-    /// Null with a plug-in.
+    /// The RS-274/NGC interpreter; null with a plug-in.
     gcode::Interpreter *gcode() const { return rs274_; }
-    /// Updates the world with the machine's state; `position` becomes the program's position.
+    /// Updates the world with the machine's state; the program's position becomes `position`.
     void synch(const geometry::Pose &position);
     /// Opens a program at its first line. An error describes the problem with the file.
     Result<> open(const std::string &path);
     // One step of the interpreter: the next line of the program, or a line of MDI.
     gcode::Step step();
     gcode::Step execute(std::string_view line);
-    /// Everything read is executed; from now on the machine may read ahead.
+    /// Called when everything read is executed; from now on the interpreter may read ahead.
     void begin_history();
-    /// The machine has reached the calls of step `read` of the interpreter (Item::read).
+    /// Called when the machine has reached the calls of step `read` of the interpreter (Item::read).
     void mark_executed(std::uint64_t read);
-    /// Once a cycle: the steps that the sequencer has reached are executed; all of them when nothing waits.
+    /// Called once in each cycle: steps that the sequencer has reached are executed; all steps if nothing
+    /// waits.
     void follow(const Sequencer &sequencer);
-    /// The current call, for the thread that uses task meanwhile.
+    /// The current call, for the thread that meanwhile uses task.
     ReaderCall &call() { return call_; }
     /// Steps that are read and not executed, including those without calls.
     std::size_t count_ahead() const { return frames_ahead_.size(); }
@@ -84,10 +85,11 @@ class ProgramReader {
     // Starts a search for a line of the open program (docs/user/run_from_line.md). The reader must have been
     // synched.
     Result<> begin_search(int line);
-    /// The same for a block of a program that began with `record`, on a machine that was restarted since.
+    /// As begin_search(), for a block of a program that began with `record`, on a machine that was restarted
+    /// later.
     struct LostPlace {
         std::uint32_t block = 0;
-        std::optional<std::uint64_t> calls;  ///< checksum; nothing: not compared
+        std::optional<std::uint64_t> calls;  ///< expected checksum; nothing: not compared
     };
     Result<> begin_recovery(StartRecord record, const LostPlace &place);
     /// Stores the current modes and parameters for begin_recovery(); an error names a state that cannot be
@@ -95,12 +97,12 @@ class ProgramReader {
     Result<> keep_start(StartRecord &record) const;
     /// Starts the checksums of the program's calls.
     void begin_marks();
-    /// A value read since then that cannot be calculated again; empty for none.
+    /// A value read since the last call that cannot be calculated again; empty: none.
     std::string take_doubt();
-    /// Last line read in the main program, or its line of the current call.
+    /// Last line read in the main program, or its line with the current call.
     int main_line() const;
     BlockSearch::Outcome step_search(int lines);
-    /// nullptr: no search
+    /// null: no search
     const BlockSearch *search() const { return search_.get(); }
     /// State used by a recovery.
     const StartRecord &recorded() const { return recorded_->record(); }
@@ -109,7 +111,7 @@ class ProgramReader {
     /// Restores modes, parameters and offsets from before the search.
     void cancel_search();
 
-    /// Notes the codes of the last block, and of earlier ones since begin_codes().
+    /// Stores the codes of the last block, and of earlier ones since begin_codes().
     void note_codes() { codes_.note(canon_.blocks(), interp_->active_codes()); }
     void begin_codes() { codes_.clear(); }
     const ModalCodeHistory &codes() const { return codes_; }
@@ -136,12 +138,12 @@ class ProgramReader {
     CanonSwitch switch_;
     gcode::MachineFrame frame_;
     std::unique_ptr<gcode::ProgramInterpreter> interp_;
-    gcode::Interpreter *rs274_ = nullptr;    ///< the same object; null: a plug-in
+    gcode::Interpreter *rs274_ = nullptr;    ///< the same object as the interpreter; null: a plug-in
     std::optional<RecordedWorld> recorded_;  ///< world used by a recovery
     std::unique_ptr<BlockSearch> search_;
     std::uint64_t script_calls_ = 0;  ///< number of known script calls
     KeptState kept_;                  ///< state before the search
-    // State to which an abort returns; the interpreter has the rest.
+    // State to which an abort returns; the interpreter has the other parts.
     gcode::MachineFrame executed_frame_;
     std::deque<FrameAfter> frames_ahead_;
     std::uint64_t executed_ = 0;

@@ -12,12 +12,12 @@ namespace mw::task {
 
 struct ReaderCall {
     LongCall call;
-    ItemQueue fresh;  ///< its calls: queued when it ends
+    ItemQueue fresh;  ///< calls of the step, queued when the call ends
     std::uint64_t reads_before = 0;
     std::optional<std::uint64_t> fixed_executed;
 
-    /// The work is being stopped: what the machine has executed by now counts, independent of what the call
-    /// still reads.
+    /// Called when the work is being stopped: the blocks executed until now count, whatever the call still
+    /// reads.
     void fix_executed(const Sequencer &sequencer) {
         if (!fixed_executed.has_value()) {
             fixed_executed = sequencer.isIdle() ? reads_before : sequencer.place().read;

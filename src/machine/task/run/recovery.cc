@@ -117,7 +117,7 @@ void Recovery::note(const RunPlace &place, ChecksumMarks &marks, const ToolStore
     const std::uint32_t block = std::max(first_, place.block);
     const auto calls = marks.before(block);
     if (!calls.has_value()) {
-        return;  // not started
+        return;  // the program was not started
     }
     if (summed_version_ != tools.version()) {
         summed_version_ = tools.version();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The journal of the run, and the offer to continue one that a power cut, a crash or an emergency stop has
+// The journal of the run, and the offer to continue a run that a power cut, a crash or an emergency stop has
 // ended (docs/integrator/journal.md).
 #pragma once
 
@@ -26,14 +26,15 @@ struct RunPlace {
 /// One thread; does not wait.
 class Recovery {
   public:
-    /// `writer` null: runs are neither journalled nor offered.
+    /// `writer` null: runs are not journalled and not offered.
     explicit Recovery(journal::Writer *writer) : writer_(writer) {}
 
     /// Reads the writer's findings. Returns a message for the operator, empty for none.
     std::string find();
     bool isOn() const { return writer_ != nullptr && writer_->isOn(); }
 
-    /// A program will start. `why_not`: why its state cannot be stored; empty: it can.
+    /// Called before a program starts. `why_not`: the reason why its state cannot be stored; empty: it can be
+    /// stored.
     void prepare(const std::string &program, const StartRecord &record, const std::string &why_not);
     /// The program starts with block `first`. Returns a message for the operator if that ends an offer, else
     /// empty.
@@ -41,24 +42,24 @@ class Recovery {
     /// The offered run continues from the start with which it was calculated; `calls` and `tools`: checksums
     /// of the calls before that position, and of the tool table.
     void begin_again(const StartRecord &record, std::uint64_t calls, std::uint64_t tools);
-    /// The run will be calculated again up to `place`, because the tool table has changed: offer() returns it
-    /// from now on. Rejected where its state cannot be calculated.
+    /// The run will be calculated again up to `place`, because the tool table has changed. From now on
+    /// offer() returns it. Rejected if its state cannot be calculated.
     Result<> call_back(const RunPlace &place, ChecksumMarks &marks);
-    /// Once a cycle of the run. `marks` of the canon; `tools` as they are.
+    /// Called once in each cycle of the run. `marks` are those of the canon, `tools` the current tools.
     void step(std::int64_t now_ns, const RunPlace &place, ChecksumMarks &marks, const ToolStore &tools);
     void note_doubt(std::uint32_t block, int line, const std::string &what);
-    /// The run has ended normally or was ended on request.
+    /// Called when the run has ended normally or was ended on request.
     void end();
-    /// The run was interrupted: it is offered.
+    /// Called when the run was interrupted: it is offered.
     void cut_short();
-    /// Message about a problem with the journal, once.
+    /// Message about a problem with the journal; returned once.
     std::optional<std::string> take_trouble();
     /// For the disk of the journal and its files, as Writer::take_delay().
     std::optional<std::string> take_delay(std::int64_t now_ns);
 
-    /// An error when there is none, or it cannot be continued.
+    /// The offered run. An error when there is none, or it cannot be continued.
     Result<const journal::Run *> offer() const;
-    /// A closer check found that it cannot be continued.
+    /// Called when a further check found that it cannot be continued.
     void refuse(const std::string &why) { refusal_ = why; }
     void forget();
     void show(RecoveryStatus &status) const;
@@ -72,12 +73,12 @@ class Recovery {
     std::string refusal_;
     std::optional<journal::Run> prepared_;
     std::optional<journal::Run> run_;  ///< the current run
-    std::uint32_t first_ = 0;          ///< its first block in this session
+    std::uint32_t first_ = 0;          ///< number of its first block in this session
     std::int64_t noted_ns_ = 0;
     std::uint64_t summed_version_ = 0, sum_of_tools_ = 0;
 };
 
-/// For a file that was checked when the machine started and has not changed since.
+/// For a file that was checked when the machine started, and that has not changed since then.
 std::string refusal_of(const journal::Run &run);
 
 }  // namespace mw::task

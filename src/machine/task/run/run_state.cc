@@ -29,7 +29,7 @@ constexpr auto IDLE = phase(RunPhase::IDLE), CLEANING = phase(RunPhase::CLEANING
                READING = phase(RunPhase::READING), SYNCHING = phase(RunPhase::SYNCHING),
                FINISHING = phase(RunPhase::FINISHING);
 constexpr auto BUSY = no_phase("a program or MDI line is already running");
-/// Of events that are not commands: it is not reported.
+/// Reason for events that are not commands; it is not reported.
 constexpr const char *LATE = "late";
 constexpr auto NOT_DUE = no_phase(LATE), NOT_READING = no_phase(LATE), NO_SYNC = no_phase(LATE),
                NO_STOP = no_phase(LATE);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How a program or line runs: its phase, and whether it is paused. Two tables give the result of each event.
+// The state of a run: its phase, and whether it is paused. Two tables give the result of each event.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@ enum class RunPhase : std::uint8_t {
     IDLE,
     CLEANING,   ///< nothing runs; actions after an abort are being executed
     STARTING,   ///< requested; begins when the axes are stopped
-    SEARCHING,  ///< calculates the state at the start position
+    SEARCHING,  ///< the state at the start position is calculated
     READING,    ///< the interpreter reads ahead
     SYNCHING,   ///< the interpreter waits until all earlier items are done
-    FINISHING,  ///< all is read; the rest is being executed
+    FINISHING,  ///< everything is read; the rest is being executed
     COUNT
 };
 
 enum class Hold : std::uint8_t {
     GOING,
-    STEPPING,  ///< until the end of a block
-    HELD,      ///< by the operator, or after a step
-    STOPPED,   ///< by M0, M1 or M60
-    PROPOSED,  ///< until a person confirms the approach
+    STEPPING,  ///< runs until the end of a block
+    HELD,      ///< paused by the operator, or after a step
+    STOPPED,   ///< paused by M0, M1 or M60
+    PROPOSED,  ///< paused until a person confirms the approach
     AWAY,      ///< the axes are released for jogging; the program keeps its position
     COUNT
 };
@@ -32,26 +32,26 @@ enum class Hold : std::uint8_t {
 enum class RunEvent : std::uint8_t {
     START,         ///< the operator runs a program or line
     BEGUN,         ///< the axes are stopped, the interpreter starts
-    SEARCH,        ///< the same, not from the first line
+    SEARCH,        ///< as BEGUN, but not from the first line
     SYNC,          ///< the interpreter must wait
-    SYNCED,        ///< it may continue
-    READ,          ///< it has reached the end
+    SYNCED,        ///< the interpreter may continue
+    READ,          ///< the interpreter has reached the end
     END,           ///< completed, failed or aborted
     CLEAN,         ///< after an abort: cleans up
     CLEANED,       ///< clean-up is done
     PAUSE,         ///< the operator pauses
     RESUME,        ///< the operator resumes
     STEP,          ///< the operator resumes for one block
-    STEP_MOVE,     ///< the operator lets a paused planner make one move
+    STEP_MOVE,     ///< the operator requests one move of a paused planner
     STEP_DONE,     ///< the block is done
     PROGRAM_STOP,  ///< M0, M1 or M60 is reached
     RELEASE,       ///< the operator releases the axes of a paused program
     PROPOSE,       ///< the approach is known
-    CONFIRM,       ///< a person has confirmed it
+    CONFIRM,       ///< a person has confirmed the approach
     COUNT
 };
 
-/// Phase and hold of the run. Pure; one thread.
+/// Phase and hold of the run. It has no side effects. One thread.
 class RunState {
   public:
     /// An event that is not possible in this state changes nothing and returns the reason.

@@ -23,7 +23,7 @@ void SearchMachine::take(const gcode::MachineCall &call) {
                 move_to(move.end, move.settings);
             },
             [this](const gcode::ProbeMove &) { doubt("a probe"); },
-            [](const gcode::TapMove &) {},  // ends at its start
+            [](const gcode::TapMove &) {},  // a tap ends at its start
             [this](const gcode::UseOffsets &one) { offsets_ = one; },
             [this](const gcode::UseToolOffset &one) { tool_offset_ = one; },
             [this](const gcode::UsePlanner &one) { planner_ = one; },
@@ -66,7 +66,7 @@ void SearchMachine::take(const gcode::MachineCall &call) {
             [this](const gcode::SetAnalogOutput &one) { analog_[one.index] = one.value; },
             [this](const gcode::WaitInput &) { doubt("an input (M66)"); },
             [this](const gcode::UserCode &one) { user_codes_.push_back(one.code); },
-            // These have no lasting effect.
+            // These calls have no lasting effect.
             [](const OneOf<gcode::Dwell, gcode::WaitOrientComplete, gcode::ProgramStop, gcode::ProgramEnd,
                            gcode::PalletShuttle, gcode::Finish, gcode::ProgramComment, gcode::OperatorMessage,
                            gcode::PrintLine, gcode::OpenLog, gcode::LogLine, gcode::CloseLog,
@@ -86,7 +86,7 @@ void SearchMachine::stop(int number) {
     machine_.spindle_direction[static_cast<std::size_t>(number)] = 0;
 }
 
-/// As in the sequencer.
+/// Changes the tool as the sequencer does.
 void SearchMachine::change_tool() {
     for (const geometry::Pose &end : tool_change_moves(real_.tool_change_place, machine_.position)) {
         machine_.position = end;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine for a program that is interpreted without moving anything: every position is the one that the
-// program has set.
+// Replaces the machine for a program that is interpreted without moving anything: each position is that of
+// the program.
 #pragma once
 
 #include <array>
@@ -20,11 +20,11 @@ namespace mw::task {
 
 /// State at the position where a search has ended.
 struct FoundModes {
-    geometry::Pose position;  ///< of the machine, at the start of the next move
+    geometry::Pose position;  ///< position of the machine at the start of the next move
     int tool = 0;             ///< tool in the spindle
-    int selected_tool = -1;   ///< selected by T and not loaded yet, -1: none
+    int selected_tool = -1;   ///< tool selected by T and not loaded yet, -1: none
     bool isMistOn = false, isFloodOn = false;
-    std::array<double, MAX_SPINDLES> speeds_rpm{};  ///< signed; 0: stopped
+    std::array<double, MAX_SPINDLES> speeds_rpm{};  ///< signed speed; 0: stopped
     std::optional<gcode::UseOffsets> offsets;
     std::optional<gcode::UseToolOffset> tool_offset;
     double feed = 0;  ///< of the last feed move [machine units/s], 0: none
@@ -42,7 +42,7 @@ class SearchMachine final : public gcode::MachineCanon,
                             public gcode::ToolSource,
                             public gcode::ParameterSource {
   public:
-    /// The real objects; all must outlive it.
+    /// The real objects; all must outlive the search.
     struct Real {
         const gcode::World &world;
         const gcode::ToolSource &tools;
@@ -50,7 +50,7 @@ class SearchMachine final : public gcode::MachineCanon,
         const ToolChangePlace &tool_change_place;
         bool tool_change_with_spindle_on = false;
     };
-    /// The search begins with the current state of the machine.
+    /// Starts with the current state of the machine.
     explicit SearchMachine(const Real &real);
 
     /// Applies calls before the program begins.
@@ -61,7 +61,7 @@ class SearchMachine final : public gcode::MachineCanon,
     FoundModes found() const;
     /// Changes of the program to the tool table; 0: the tool in the spindle.
     const std::map<int, gcode::ToolEntry> &tool_entries() const { return entries_; }
-    /// Reason why the rest is unknown; empty: none.
+    /// Reason why the rest is unknown; empty: it is known.
     const std::string &doubt() const { return doubt_; }
 
     void begin_block(const gcode::BlockRef &) override { ++blocks_; }

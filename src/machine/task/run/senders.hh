@@ -19,7 +19,7 @@ namespace mw::task {
 class Senders {
   public:
     using Authority = mailbox::Authority;
-    /// It must outlive this.
+    /// The confinement must outlive this object.
     explicit Senders(const Confinement &confinement)
         : confinement_(confinement),
           jogs_({[this](std::uint64_t owner) { return processes_.state_of(owner); },
@@ -27,7 +27,7 @@ class Senders {
     Senders(const Senders &) = delete;
     Senders &operator=(const Senders &) = delete;
 
-    /// Scope of executing a command. Scopes nest: a stop during a long call of another command.
+    /// Scope of executing a command. Scopes may be nested: a stop during a long call of another command.
     class Sending {
       public:
         Sending(Senders &senders, const mailbox::CommandServer::Delivery &delivery)
@@ -41,22 +41,23 @@ class Senders {
         Authority before_;
     };
     Authority sender() const { return sender_; }
-    /// True if task may open this file for the sender.
+    /// An error if task may not open this file for the sender.
     Result<> check_file(const std::string &path) const {
         return sender_ == Authority::CONFIGURE ? Result<>{} : check_program(confinement_, path);
     }
     void note_opened() { opener_ = sender_; }
-    /// Authority for a run of the open program: the lower one of those who opened and started it.
+    /// Authority for a run of the open program: the lower authority of the clients that opened and started
+    /// it.
     Authority of_program() const { return std::min(sender_, opener_); }
 
     void begin_run(Authority authority) { run_ = authority; }
-    /// A run with lower authority continues.
+    /// For a run with lower authority that continues.
     void limit_run() { run_ = opener_ = Authority::OPERATE; }
     bool isRunConfined() const { return run_ != Authority::CONFIGURE; }
     /// Restrictions of the run, and of the clean-up after it; null: any file.
     const Confinement *confinement() const { return isRunConfined() ? &confinement_ : nullptr; }
 
-    /// The command was accepted. Jogs of panels and of this process need no guard.
+    /// Called when the command was accepted. Jogs of panels and of this process need no guard.
     void note_taken(const mailbox::CommandServer::Delivery &delivery) {
         const bool guarded = !delivery.isPanel && delivery.owner != own_process_;
         jogs_.note(delivery.command, guarded ? delivery.owner : 0);

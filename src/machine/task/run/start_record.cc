@@ -13,7 +13,7 @@
 namespace mw::task {
 namespace {
 
-/// Version of the format; others are not read.
+/// Version of the format; other versions are not read.
 constexpr std::uint32_t FORM = 2;
 
 template <class Io, class Pose>
@@ -60,7 +60,8 @@ void tool(Io &io, Tool &entry) {
     io(entry.comment);
 }
 
-/// Each element takes at least one byte: a count above the remaining bytes is not valid.
+/// Reads a list. Each element has at least one byte, so a count above the number of remaining bytes is not
+/// valid.
 template <class One, class Fields>
 void list(Packer &out, const std::vector<One> &all, const Fields &fields) {
     out(static_cast<std::uint64_t>(all.size()));
@@ -241,7 +242,7 @@ Result<StartRecord> with_tools_now(StartRecord record, const FoundModes &found,
                 fmt::format("the program itself sets the data of tool {}, which were changed", now.toolno));
         }
         gcode::ToolEntry &spindle = record.tools[0];
-        if (i > 0 && spindle.toolno == now.toolno) {  // copy of a fixed changer
+        if (i > 0 && spindle.toolno == now.toolno) {  // the copy in the spindle of a fixed changer
             const int pocket = spindle.pocketno;
             spindle = now;
             spindle.pocketno = pocket;

@@ -24,7 +24,7 @@ struct StartRecord {
     std::vector<gcode::ToolEntry> tools;
     gcode::UseOffsets offsets;
     gcode::UseToolOffset tool_offset;
-    std::vector<gcode::SetSpindleMode> spindle_modes;  ///< of running spindles, and so on
+    std::vector<gcode::SetSpindleMode> spindle_modes;  ///< settings of running spindles, and so on
     std::vector<gcode::UseSpindleSpeed> spindle_speeds;
     std::vector<gcode::StartSpindle> spindle_starts;
     std::uint64_t digital_out = 0;
@@ -39,7 +39,7 @@ struct StartRecord {
     static std::optional<StartRecord> unpack(std::string_view bytes);
 };
 
-/// The machine as it was at the start of a program, on a machine that was restarted since.
+/// The machine as it was at the start of a program, on a machine that was restarted later.
 class RecordedWorld final : public gcode::World, public gcode::ToolSource {
   public:
     struct Real {
@@ -69,8 +69,8 @@ class RecordedWorld final : public gcode::World, public gcode::ToolSource {
     StartRecord record_;
 };
 
-/// The same start with the current tools in `tools`. `found`: state at the position where the program
-/// continues. Rejected when other tools are in the table, or the program itself has set changed data.
+/// The same start with the current tools in `tools`. `found` is the state at the position where the program
+/// continues. Rejected if the table has other tools, or the program itself has set data that were changed.
 Result<StartRecord> with_tools_now(StartRecord record, const FoundModes &found,
                                    const gcode::ToolSource &tools);
 

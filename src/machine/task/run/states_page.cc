@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// docs/reference/states.md, made from the tables that task uses.
+// Generates docs/reference/states.md from the tables that task uses.
 #include <array>
 #include <map>
 #include <vector>

@@ -61,7 +61,7 @@ void TaskCanon::put(const gcode::MachineCall &call) {
                 tool_offset_ = offset.offset;
                 add(offset);
             },
-            // Comments are for printing canons; this machine has no pallet shuttle.
+            // Comments are only for printing; this machine has no pallet shuttle.
             [](const OneOf<gcode::ProgramComment, gcode::PalletShuttle> auto &) {},
             [this](const OneOf<gcode::TapMove, gcode::Dwell, gcode::UsePlanner, gcode::SetSpindleMode,
                                gcode::UseSpindleSpeed, gcode::StartSpindle, gcode::StopSpindle,
@@ -107,7 +107,7 @@ void TaskCanon::insert_first(const std::vector<gcode::MachineCall> &calls, const
     const motion::SourceTag tag = tag_;
     const std::uint64_t last_read = std::exchange(read_, read);
     last_end_ = position;
-    // The inserted calls precede the next item; all items before it are done.
+    // The inserted calls come before the next item; all items before it are done.
     tag_ = behind.empty() ? tag_ : behind.front().source;
     tag_.line = line;
     for (const gcode::MachineCall &call : calls) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The canon that runs a program: appends to the ordered queue, never blocks.
+// The canon that runs a program: appends calls to the ordered queue, never blocks.
 #pragma once
 
 #include <optional>
@@ -18,21 +18,21 @@ struct ToolChangePlace {
     geometry::Pose position;  ///< [machine units], machine coordinates
 };
 
-/// Moves of a tool change from `position`, in order; empty when it does not move.
+/// Moves of a tool change from `position`, in order; empty if the machine does not move.
 std::vector<geometry::Pose> tool_change_moves(const ToolChangePlace &place, const geometry::Pose &position);
 
 class TaskCanon final : public gcode::MachineCanon {
   public:
     explicit TaskCanon(ItemQueue &queue, const ToolChangePlace &place = {}) : queue_(queue), place_(place) {}
 
-    /// Number of blocks since reset(); the number of the current one.
+    /// Number of blocks since reset(), which is the number of the current block.
     std::uint32_t blocks() const { return tag_.block; }
     /// The name of a file by the index in SourceTag.
     const std::string &file_name(std::uint32_t index) const { return files_[index]; }
     /// Text of the last block.
     const std::string &block_text() const { return text_; }
-    /// The last announced offsets: active when the queue has been executed, and when nothing runs. Nothing
-    /// before the first.
+    /// The last announced offsets. They are active when the queue has been executed, and when nothing runs.
+    /// Nothing before the first.
     const std::optional<gcode::UseOffsets> &offsets() const { return offsets_; }
     const std::optional<geometry::Pose> &tool_offset() const { return tool_offset_; }
     void reset();
@@ -45,22 +45,23 @@ class TaskCanon final : public gcode::MachineCanon {
         ++read_;
         asking_ = false;
     }
-    /// The number of that step.
+    /// The number of the current step.
     std::uint64_t reads() const { return read_; }
-    /// That step has made calls.
+    /// True if the current step has made calls.
     bool isAsking() const { return asking_; }
-    /// A block without calls keeps its place in the order: it is executed when the queue reaches it.
+    /// Gives a block without calls its position in the order: it is executed when the queue reaches it.
     void pass_block(const gcode::BlockRef &block);
-    /// Inserts calls before all waiting ones, from `position` on; with the line `line` and step `read`.
+    /// Inserts calls before all waiting calls, starting at `position`; they belong to line `line` and step
+    /// `read`.
     void insert_first(const std::vector<gcode::MachineCall> &calls, const geometry::Pose &position, int line,
                       std::uint64_t read);
-    /// The position of the machine: the exact end of the last move, if the machine is there within rounding.
-    /// So the values that a program reads do not depend on rounding errors of the motion.
+    /// The exact end of the last move if the machine is at this position within rounding, else the position
+    /// of the machine. So values that a program reads do not depend on rounding errors of the motion.
     geometry::Pose exact(const geometry::Pose &machine) const;
     /// Position of the machine when nothing is queued.
     void set_position(const geometry::Pose &position) { last_end_ = position; }
 
-    /// Sends calls to `queue` instead; null: to the normal queue again.
+    /// Sends calls to `queue`; null: to the normal queue again.
     void divert(ItemQueue *queue) { diverted_ = queue; }
 
     void begin_block(const gcode::BlockRef &block) override;

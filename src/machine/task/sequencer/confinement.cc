@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Extensions of log files, which no program of this computer treats as anything but text.
+/// Extensions of log files, which all programs of this computer treat as text.
 constexpr std::array<std::string_view, 6> LOG_EXTENSIONS{".txt", ".log", ".csv", ".dat", ".xyz", ".asc"};
 
 class Descriptor {
@@ -46,8 +46,8 @@ class Descriptor {
     int fd_;
 };
 
-/// The path below `folder`, or nothing. Links in both are resolved; paths that do not exist are used as
-/// written.
+/// The path below `folder`, or nothing. Links in both are resolved; paths that do not exist are used
+/// unchanged.
 std::optional<fs::path> below(const std::string &folder, const fs::path &path) {
     std::error_code error;
     const fs::path root = fs::weakly_canonical(folder, error);
@@ -82,7 +82,7 @@ bool isSameFile(const struct stat &status, const std::string &path) {
            other.st_ino == status.st_ino;
 }
 
-/// Why an open file is not a log that a program may write; empty if it is.
+/// Reason why an open file is not a log that a program may write; empty if it is.
 std::string fault_of(const struct stat &status, const Confinement &confinement) {
     constexpr mode_t PROGRAM_BITS = S_IXUSR | S_IXGRP | S_IXOTH;
     if (!S_ISREG(status.st_mode)) {
@@ -153,7 +153,8 @@ Result<int> open_log(const Confinement &confinement, const std::string &path, bo
     if (!fault.empty()) {
         return refused(path, fault);
     }
-    if (!appending && ::ftruncate(file.get(), 0) != 0) {  // only now: a rejected file is not changed
+    // truncated only now, so that a rejected file is not changed
+    if (!appending && ::ftruncate(file.get(), 0) != 0) {
         return refused(path, std::strerror(errno));
     }
     return file.release();

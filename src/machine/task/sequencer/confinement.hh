@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The files of this computer that the authority to operate allows (docs/integrator/security.md).
+// The files of this computer that the authority to operate may access (docs/integrator/security.md).
 #pragma once
 
 #include <string>
@@ -10,13 +10,14 @@
 namespace mw::task {
 
 struct Confinement {
-    /// [DISPLAY]PROGRAM_PREFIX and the folder of programs made by filters; logs are written into the first.
+    /// [DISPLAY]PROGRAM_PREFIX, and the folder of programs converted by filters; logs are written to the
+    /// first one.
     std::vector<std::string> program_folders;
     std::vector<std::string> program_extensions;  ///< in lower case, with the dot; [FILTER] included
     std::vector<std::string> kept_files;          ///< INI, HAL, tool table, ...: programs may not write them
 };
 
-/// An error if `path`, with links resolved, is not below a program folder, or has a hidden component there.
+/// An error if `path`, with links resolved, is not below a program folder or has a hidden component below it.
 /// Does not read the file.
 Result<> check_program(const Confinement &confinement, const std::string &path);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The ordered queue between the interpreter and the machine: what a program does, in program order.
+// The ordered queue between the interpreter and the machine: the actions of a program, in program order.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace mw::task {
 struct Item {
     motion::SourceTag source;
     gcode::MachineCall call;
-    std::uint64_t read = 0;  ///< number of the interpreter step that made it; never decreases
+    std::uint64_t read = 0;  ///< number of the interpreter step that created the item; never decreases
 };
 
 using ItemQueue = std::deque<Item>;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The active planner: from the INI file, from a program (G64 R), from pin ini.traj-planner-type
-// asks.
+// The active planner, selected by the INI file, by a program (G64 R), or by pin ini.traj-planner-type.
 #pragma once
 
 #include <cstdint>
@@ -26,15 +25,16 @@ class PlannerMode {
 
     /// Reads the initial settings of the machine.
     void configure(const std::vector<motion::SetParameter> &parameters);
-    /// Reports when jerk limits are selected and not configured.
+    /// Reports jerk limits that are selected and not configured.
     void announce();
-    /// Motion is stopped. Returns the command whose answer is awaited, 0 when nothing changes.
+    /// Sets the planner while motion is stopped. Returns the command whose answer is awaited, 0 if nothing
+    /// changes.
     motion::CommandId set(int type);
     /// A change requested by an operator (a pin), applied when `step` finds everything idle.
     void wish(int type);
     /// Fraction of the reachable speed in corners for moves that set none, 0.1 to 1; takes effect at once. A
-    /// value out of range is limited, NaN is ignored; both are reported, and again only after another fault
-    /// or a valid value.
+    /// value out of range is limited, NaN is ignored. Both are reported once, and again only after another
+    /// fault or a valid value.
     void set_corner_scale(double scale);
     void step(bool idle);
     int type() const { return type_; }

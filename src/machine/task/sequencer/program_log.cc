@@ -126,7 +126,7 @@ ProgramLog::~ProgramLog() {
         return;
     }
     lock.unlock();
-    thread_.detach();  // it shares ownership of its data
+    thread_.detach();  // the thread shares ownership of its data
     std::fputs(fmt::format("{} is incomplete: its disk does not respond\n", path_).c_str(), stderr);
 }
 
@@ -159,7 +159,7 @@ void ProgramLog::work(Shared &shared) {
 }
 
 void ProgramLog::run_thread(const std::shared_ptr<Shared> &shared) {
-    raise_priority();  // the program waits for the result of opening a file
+    raise_priority();  // raised because the program waits for the result of opening a file
     while (true) {
         work(*shared);
         std::unique_lock lock(shared->mutex);

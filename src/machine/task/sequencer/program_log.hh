@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A file that a program writes: (logopen,...) or (probeopen ...). Task never waits for its disk.
+// A file that a program writes: (logopen,...) or (probeopen ...). Task never waits for the disk.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace mw::task {
 class LogDisk {
   public:
     virtual ~LogDisk() = default;
-    /// Returns a descriptor. `confinement`: of a run that may only operate; null otherwise.
+    /// Returns a descriptor. `confinement` is that of a run that may only operate; null otherwise.
     virtual Result<int> open(const std::string &path, bool appending, const Confinement *confinement);
     virtual Result<> write(int file, std::string_view text);
     virtual Result<> close(int file);
@@ -26,7 +26,7 @@ class LogDisk {
 
 enum class LogWorks : std::uint8_t {
     ALONE,    ///< in a separate thread
-    ON_CALL,  ///< in each call: for virtual clocks
+    ON_CALL,  ///< in each call, for virtual clocks
 };
 
 /// Opens, writes and closes in the order of the calls; each line reaches the file as soon as the disk accepts
@@ -34,12 +34,12 @@ enum class LogWorks : std::uint8_t {
 class ProgramLog {
   public:
     explicit ProgramLog(LogWorks works, std::shared_ptr<LogDisk> disk = std::make_shared<LogDisk>());
-    /// Waits at most 0.5 s for pending lines; lost lines are reported on standard error.
+    /// Waits at most 0.5 s for pending lines; reports lost lines on standard error.
     ~ProgramLog();
     ProgramLog(const ProgramLog &) = delete;
     ProgramLog &operator=(const ProgramLog &) = delete;
 
-    /// Closes the open file first; the same file may be opened again. opened() has the result.
+    /// Opens a file after closing the open one, which may be the same file. The result is in opened().
     void open(const std::string &path, bool appending, const Confinement *confinement = nullptr);
     /// Nothing until the last open() is done.
     std::optional<Result<>> opened() const;
@@ -49,12 +49,12 @@ class ProgramLog {
     /// Drops an open() that has not started.
     void close();
 
-    /// Why lines are lost, once.
+    /// Reason why lines are lost; returned once.
     std::optional<Error> take_failure();
-    /// Message that the disk has not answered for 1 s, once.
+    /// Message that the disk has not answered for 1 s; returned once.
     std::optional<std::string> take_delay();
-    /// All lines are in the files, and the files are closed; or the disk has not answered for 1 s. False
-    /// until take_failure() was called, if there is a failure.
+    /// True if all lines are in the files and the files are closed, or the disk has not answered for 1 s.
+    /// After a failure it is false until take_failure() was called.
     bool isSettled() const;
 
   private:

@@ -18,7 +18,7 @@ class ProgramLogs {
     ProgramLogs(LogWorks works, const std::shared_ptr<LogDisk> &disk)
         : lines_(works, disk), probes_(works, disk) {}
 
-    /// opened() has the result.
+    /// Opens the log file. The result is in opened().
     void open(const gcode::OpenLog &call, const Confinement *confinement) {
         last_opened_ = &lines_;
         lines_.open(call.path, call.appending, confinement);
@@ -30,7 +30,7 @@ class ProgramLogs {
     /// Result of the last open().
     std::optional<Result<>> opened() const { return last_opened_->opened(); }
     Result<> write(const gcode::LogLine &call) { return lines_.write(call.text); }
-    /// No effect without a file for probes. take_failure() reports failures.
+    /// Has no effect without a file for probes. take_failure() reports failures.
     void write_probe(const std::string &line) {
         if (const auto written = probes_.write(line); !written.has_value()) {
             probe_failure_ = written.error();

@@ -17,7 +17,7 @@ void ProgramSpindles::send(int spindle, MotionLink &motion) {
     on.css_max_rpm = state.css_max_rpm;
     on.isWaitingForSpeed = state.waiting;
     if (state.css_max_rpm > 0) {
-        // Constant surface speed: the motion controller divides by the radius.
+        // Constant surface speed: the motion controller divides it by the radius.
         on.css_factor = state.direction * gcode::surface_speed_factor(state.speed, state.surface_unit);
         on.css_x_offset = centre_line_x_;
         on.speed_rpm = state.direction * state.css_max_rpm;

@@ -22,7 +22,7 @@ class ProgramSpindles {
     void stop(const gcode::StopSpindle &stop, MotionLink &motion);
     /// The operator's command, executed at once; 0 stops.
     void command(int spindle, double signed_rpm, bool waiting, MotionLink &motion);
-    /// New signed speed of a running spindle [rev/min]: a step neither starts nor stops a spindle.
+    /// New signed speed of a running spindle [rev/min]; a step does not start or stop a spindle.
     Result<double> stepped_rpm(int spindle, double step_rpm) const;
     void stop_all(MotionLink &motion);
     // Updates the centre line of spindles with constant surface speed.
@@ -31,14 +31,14 @@ class ProgramSpindles {
 
     /// Calls that start the running spindles with their current settings.
     std::vector<gcode::MachineCall> starts() const;
-    /// True if all spindles that run here have the same direction and speed there.
+    /// True if all spindles that run here have the same direction and speed in the other object.
     bool isKeptBy(const ProgramSpindles &other) const;
 
     /// As programmed, unscaled. [rev/min or surface units/min]
     double speed(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].speed; }
     int direction(int spindle) const { return spindles_[static_cast<std::size_t>(spindle)].direction; }
-    /// The next cut waits until spindles have reached the speeds commanded since the last cut; a stopped
-    /// spindle is not awaited.
+    /// The next cut waits until spindles have reached the speeds commanded since the last cut; it does not
+    /// wait for a stopped spindle.
     bool isNextCutWaiting() const { return awaited_ != 0; }
     void end_wait() { awaited_ = 0; }
 
@@ -64,7 +64,7 @@ class ProgramSpindles {
     gcode::UseOffsets offsets_;
     gcode::UseToolOffset tool_offset_;
     double centre_line_x_ = 0;   ///< machine X of program X0 [machine units]
-    std::uint32_t awaited_ = 0;  ///< bit per spindle
+    std::uint32_t awaited_ = 0;  ///< spindles that the next cut waits for; bit per spindle
 };
 
 }  // namespace mw::task

@@ -74,14 +74,15 @@ void SentMoves::follow(const motion::Status &status) {
         }
     };
     while (!sent_.empty() && sent_.front().id <= status.last_path_id) {
-        show(sent_.front().item);  // a move may be shorter than a cycle of task and never be seen as current
+        // a move may be shorter than a cycle of task, so that it is never seen as the current move
+        show(sent_.front().item);
         sent_.pop_front();
     }
     if (status.queue_depth == 0 || sent_.empty()) {
         return;
     }
     if (status.active_path_id != 0) {
-        line_ = status.source.line;  // in reverse it is an earlier move
+        line_ = status.source.line;  // in a reverse run it is an earlier move
     } else {
         show(sent_.front().item);
     }
@@ -158,7 +159,7 @@ std::vector<gcode::MachineCall> rest_of_arc(const gcode::ArcMove &arc, const geo
     const double sense = arc.angle_rad > 0 ? 1 : -1, whole = std::fabs(arc.angle_rad);
     double left = sense * std::atan2(dot(cross(here, to), normal), dot(here, to));
     left = left < 0 ? left + TURN : left;
-    // Of several revolutions: as many as remain.
+    // For an arc of several revolutions: as many revolutions as remain.
     const double along = dot(part(arc.end, first), normal) - dot(part(start, first), normal);
     const double expected = std::min(whole, to_go / std::hypot(radius, along / whole));
     const double turns = std::max(0.0, std::round((expected - left) / TURN));
@@ -170,7 +171,8 @@ std::vector<gcode::MachineCall> rest_of_arc(const gcode::ArcMove &arc, const geo
     for (int i = 0; i < 3; ++i) {
         const auto axis = static_cast<std::size_t>(i);
         const double height =
-            dot(part(start, first), normal) - dot(centre, normal) + done * along;  // along the normal
+            // distance along the normal
+            dot(part(start, first), normal) - dot(centre, normal) + done * along;
         on[first + i] = centre[axis] + here[axis] * radius / length(here) + height * normal[axis];
     }
     const Vector a = part(on, first), b = part(place, first);

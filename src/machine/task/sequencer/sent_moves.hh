@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The moves that were sent to the planner and are not done: they can be taken back and restarted from the
+// The moves that were sent to the planner and are not done. They can be taken back and restarted from the
 // position of the machine.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace mw::task {
 class SentMoves {
   public:
     /// `item` was sent as path command `id`; `position` is that of the machine, for a move that begins there.
-    /// Returns the position where the item begins.
+    /// Returns the position at which the item begins.
     geometry::Pose note(motion::CommandId id, const Item &item, const geometry::Pose &position);
     /// Drops completed moves.
     void follow(const motion::Status &status);
@@ -25,12 +25,12 @@ class SentMoves {
     int line() const { return line_; }
     void clear_line() { line_ = 0; }
     void clear() { sent_.clear(); }
-    /// The first move that is not done when those up to `id` are; null for none.
+    /// The first move that is not done after the moves up to `id`; null: none.
     const Item *oldest_after(motion::CommandId id) const;
 
-    /// Why the current move cannot be restarted from `place`, in its middle; empty: it can.
+    /// The reason why the current move cannot be restarted from `place`, in its middle; empty: it can.
     std::string why_not(const motion::Status &status, const geometry::Pose &place) const;
-    /// All moves that are not done, in order; the current one from `place` on.
+    /// All moves that are not done, in order; the current move begins at `place`.
     std::vector<Item> rest(const motion::Status &status, const geometry::Pose &place) const;
 
   private:
@@ -43,12 +43,12 @@ class SentMoves {
 
     std::deque<Sent> sent_;
     geometry::Pose end_;         ///< end of the last move
-    bool isEndUnknown_ = false;  ///< it is a probe: what follows it waits for it
+    bool isEndUnknown_ = false;  ///< a probe, so later moves wait for it
     int line_ = 0;
 };
 
-/// The rest of an arc that began at `start`, with `to_go` left [machine units], from `place` on: the arc,
-/// preceded by a short line to it if `place` is beside it (in a rounded corner).
+/// The rest of an arc that began at `start`, with `to_go` left [machine units], beginning at `place`: the
+/// arc, preceded by a short line if `place` is beside it (in a rounded corner).
 std::vector<gcode::MachineCall> rest_of_arc(const gcode::ArcMove &arc, const geometry::Pose &start,
                                             const geometry::Pose &place, double to_go);
 

@@ -46,7 +46,7 @@ motion::PathBody path_body(const gcode::TapMove &tap, const MoveSource &source) 
     return motion::RigidTap{tap.end, tap.scale, terms_of(tap.settings, source)};
 }
 
-/// True if the visitor is done with the call; a visitor without a result always is.
+/// True if the visitor has completed the call; a visitor without a result always completes it.
 template <class Visitor>
 bool carry_out(const Visitor &visitor, const gcode::MachineCall &item) {
     return std::visit(
@@ -90,7 +90,7 @@ Need need_of(const gcode::MachineCall &call) {
         call);
 }
 
-/// The call reads or changes tool data.
+/// True if the call reads or changes tool data.
 bool isOfTools(const gcode::MachineCall &call) {
     return std::visit(
         []<class C>(const C &) {
@@ -195,7 +195,7 @@ bool Sequencer::isReady(const Item &item) {
     }
     motion_.flush();
     const bool tool_table_due =
-        std::holds_alternative<gcode::UserCode>(item.call);  // its program may read it
+        std::holds_alternative<gcode::UserCode>(item.call);  // its program may read the outputs
     if (tool_table_due && !tools_.isSettled()) {
         return false;
     }
@@ -209,7 +209,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         motion_.send(motion::SetSwitch{what, spindle, on});
     };
     const MoveSource source{item.source, spindles_.isNextCutWaiting()};
-    // A handler that returns false is called again in the next cycle.
+    // If a handler returns false, it is called again in the next cycle.
     const auto visitor = Overloaded{
         [&](const OneOf<gcode::LineMove, gcode::ArcMove, gcode::TapMove> auto &move) {
             return push_move(path_body(move, source), move.settings, item);
@@ -352,7 +352,7 @@ void Sequencer::perform(const gcode::UserCode &code) {
 
 void Sequencer::perform(const gcode::ChangeTool &) {
     if (!tool_change_.isSelected()) {
-        return;  // M6 without T since the last change: keeps the tool in the spindle
+        return;  // M6 without T since the last change keeps the tool in the spindle
     }
     if (!settings_.tool_change_with_spindle_on) {
         stop_spindles();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Takes the ordered queue to the machine: motion and I/O each at the right time (requirement D2).
+// Executes the ordered queue: motion and I/O each at the right time (requirement D2).
 #pragma once
 
 #include <cstdint>
@@ -32,21 +32,21 @@ struct SequencerEvents {
     std::function<void(const std::string &)> fail;  ///< an action failed; task aborts
     std::function<void(const gcode::UseOffsets &)> offsets;
     std::function<motion::CommandId(const gcode::UseToolOffset &)> tool_offset;
-    /// Changes the planner at standstill. Returns the command whose answer is awaited, 0: none; nothing when
-    /// the change is not possible, and task aborts.
+    /// Changes the planner at standstill. Returns the command whose answer is awaited, 0: none. If the change
+    /// is not possible it returns nothing, and task aborts.
     std::function<std::optional<motion::CommandId>(const gcode::UsePlanner &)> planner_mode;
-    /// The files that the run may write; null, or no function: any.
+    /// The files that the run may write; null, or no function: any file.
     std::function<const Confinement *()> confinement;
     /// Starts the program of a user M code.
     std::function<void(const gcode::UserCode &)> start_user_code;
-    /// Nothing while the program of a user M code starts and runs, then its result.
+    /// Result of the program of a user M code; nothing while it starts and runs.
     std::function<std::optional<Result<>>()> user_code_result;
 };
 
 /// A move that was sent to the planner.
 struct SentMove {
     motion::CommandId id = 0;
-    geometry::Pose start;  ///< programmed position where it begins
+    geometry::Pose start;  ///< programmed start position
     const motion::PathBody &body;
 };
 /// Called for each move that is sent to the planner.
@@ -55,7 +55,7 @@ using MoveListener = std::function<void(const SentMove &move)>;
 struct SequencerSettings {
     std::string changer_error_text{};          ///< [TASK]IO_ERROR
     bool tool_change_with_spindle_on = false;  ///< [EMCIO]TOOL_CHANGE_WITH_SPINDLE_ON
-    int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: effect of G64 R above 0; 0: it is rejected
+    int smooth_planner = 1;  ///< [TRAJ]SMOOTH_PLANNER: effect of G64 R above 0; 0: G64 R is rejected
     LogWorks log_works = LogWorks::ON_CALL;
     std::shared_ptr<LogDisk> log_disk = std::make_shared<LogDisk>();
 };
@@ -68,7 +68,7 @@ struct AwaitedOrient {
     double timeout_s = 0;
 };
 
-/// One thread; step() once a task cycle, does not block.
+/// One thread; step() is called once in each task cycle and does not block.
 class Sequencer {
   public:
     Sequencer(ItemQueue &queue, MotionLink &motion, io::DiscreteIo &io, ToolStore &tools,
@@ -76,16 +76,16 @@ class Sequencer {
 
     enum class TravelRange : std::uint8_t {
         ALL,
-        NO_TOOLS,  ///< up to the next item that uses tool data, which another call reads now
+        NO_TOOLS,  ///< up to the next item that uses tool data, because another call reads the tools now
     };
-    /// Starts items that may start now. `now_ns` is the clock of the scheduler.
+    /// Starts the items that may start now. `now_ns` is the clock of the scheduler.
     void step(std::int64_t now_ns, TravelRange reach = TravelRange::ALL);
     /// Drops all waiting items and handshakes; the changer receives the reason.
     void abort(int reason);
-    /// Nothing queued, nothing awaited, motion complete, no handshake.
+    /// True if nothing is queued or awaited, motion is complete and there is no handshake.
     bool isIdle() const;
-    /// Executes only one block: isStepDone() is true when the next one could start and the axes are stopped.
-    /// Without `single` it executes all of them.
+    /// Executes only one block: isStepDone() is true when the next block could start and the axes are
+    /// stopped. Without `single` all blocks are executed.
     void set_stepping(bool single);
     bool isStepDone() const { return step_done_; }
 
@@ -103,17 +103,17 @@ class Sequencer {
         bool timed_out = false;
     };
     InputResult input() const { return {input_value_, is_input_timed_out_}; }
-    /// Position of the first block that is not done; number 0 before the first.
+    /// Position of the first block that is not done; number 0 before the first block.
     ItemPlace place() const;
-    /// Another program starts.
+    /// Called when another program starts.
     void forget_place() { last_begun_ = {}; }
-    /// Task updates it from motion once a cycle, before anything that may end a program.
+    /// Task updates it from motion once in each cycle, before anything that may end a program.
     SentMoves &sent() { return sent_; }
     /// Starts or stops a spindle at once (operator's command).
     void command_spindle(int spindle, double signed_rpm, bool waiting) {
         spindles_.command(spindle, signed_rpm, waiting, motion_);
     }
-    /// As programmed (unscaled).
+    /// Spindles as programmed (unscaled).
     const ProgramSpindles &spindles() const { return spindles_; }
     /// For a paused program: puts all moves that the planner has not done back into the queue; the caller
     /// stops motion. An error explains why the program cannot continue from `place`.
@@ -142,7 +142,7 @@ class Sequencer {
     bool push_output(const gcode::SetDigitalOutput &output);
     bool push_output(const gcode::SetAnalogOutput &output);
     bool begin(const gcode::UsePlanner &planner);
-    // Actions without duration; some are awaited afterwards.
+    // Actions without duration; for some of them the sequencer waits afterwards.
     void perform(const gcode::Dwell &dwell, std::int64_t now_ns);
     void perform(const gcode::WaitInput &input, std::int64_t now_ns);
     void perform(const gcode::WaitOrientComplete &orient, std::int64_t now_ns);
@@ -163,8 +163,8 @@ class Sequencer {
     MoveListener move_listener_;
 
     Wait wait_ = Wait::NONE;
-    ExecState blocked_ = ExecState::DONE;  ///< what the front item has waited for in the last step
-    std::int64_t deadline_ns_ = 0;         ///< of a dwell or a timeout; 0: none
+    ExecState blocked_ = ExecState::DONE;  ///< condition for which the front item waited in the last step
+    std::int64_t deadline_ns_ = 0;         ///< end of a dwell or a timeout; 0: none
     gcode::WaitInput awaited_input_{};
     double input_value_ = 0, last_input_ = 0;
     bool is_input_timed_out_ = false;
@@ -176,8 +176,8 @@ class Sequencer {
     bool stepping_ = false, step_done_ = false;
     bool held_ = false;            ///< paused by the last stop, for the rest of the cycle
     bool failed_ = false;          ///< nothing starts until abort()
-    std::uint64_t step_read_ = 0;  ///< step to be executed by single step; 0: none yet
-    ItemPlace last_begun_;         ///< of the last item started
+    std::uint64_t step_read_ = 0;  ///< step executed by single step; 0: none yet
+    ItemPlace last_begun_;         ///< position of the last started item
     ProgramLogs logs_;
     bool probe_made_ = false;
 };

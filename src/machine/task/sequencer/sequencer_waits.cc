@@ -48,7 +48,7 @@ bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
     constexpr int IN_PROGRESS = 1;
     const bool reported = orient_.isTold;
     orient_.isTold = orient_.command == 0 || motion_.isAnswered(orient_.command);
-    if (!reported) {  // the status may still be about an earlier command
+    if (!reported) {  // the status may still belong to an earlier command
         return false;
     }
     const motion::SpindleStatus &spindle =

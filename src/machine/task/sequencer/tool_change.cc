@@ -9,7 +9,7 @@
 namespace mw::task {
 namespace {
 
-/// Index of a tool; 0 for "no tool" of a fixed changer, -1 when the table does not have it.
+/// Index of a tool; 0 for "no tool" of a fixed changer, -1 if the table does not have the tool.
 int index_of(int toolno, const ToolStore &tools) {
     return toolno == 0 && !tools.isRandom() ? 0 : tools.index_of_tool(toolno);
 }
@@ -38,7 +38,7 @@ Result<> ToolChange::select(const gcode::SelectTool &call, const ToolStore &tool
 }
 
 bool ToolChange::start(const ToolStore &tools, io::DiscreteIo &io) {
-    // Unloads an empty spindle again: after a start its state is unknown.
+    // Also unloads an empty spindle, because its state is unknown after a start.
     const bool is_tool = *selected_ > 0 || tools.isRandom();
     const bool present = is_tool && tools.entry(0).toolno == *selected_;
     if (present) {

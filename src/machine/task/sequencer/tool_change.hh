@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// T, M6 and M61: from the number of a tool to its place in the table, to the changer, and back into the
-// table.
+// T, M6 and M61: from the number of a tool to its index in the table, to the changer, and back to the table.
 #pragma once
 
 #include <optional>
@@ -18,13 +17,13 @@ namespace mw::task {
 /// in which the changer reports the tool as loaded. One thread.
 class ToolChange {
   public:
-    /// `error_text` of [TASK]IO_ERROR: %d is the reason; empty: our text.
+    /// `error_text` of [TASK]IO_ERROR: %d is the reason; empty: our own text.
     explicit ToolChange(std::string error_text = {}) : error_text_(std::move(error_text)) {}
-    /// The changer prepares it; an error when the table does not have this number.
+    /// Requests the changer to prepare the tool; an error if the table does not have this number.
     Result<> select(const gcode::SelectTool &call, const ToolStore &tools, io::DiscreteIo &io);
-    /// A tool was selected since the last change: without one M6 keeps the spindle's tool.
+    /// True if a tool was selected since the last change; otherwise M6 keeps the tool in the spindle.
     bool isSelected() const { return selected_.has_value(); }
-    /// Starts the change; it is done when the changer is idle again. False when the tool is already in the
+    /// Starts the change, which is done when the changer is idle again. False if the tool is already in the
     /// spindle.
     bool start(const ToolStore &tools, io::DiscreteIo &io);
     /// Sets the tool in the spindle without a change.
@@ -40,7 +39,7 @@ class ToolChange {
     std::optional<int> fault_reason() const { return fault_reason_; }
 
   private:
-    /// By number: indices in the table change.
+    /// Tools by number, because indices in the table change.
     std::optional<int> selected_, changing_;
     std::optional<int> fault_reason_;
     std::string error_text_;

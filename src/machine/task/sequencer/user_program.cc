@@ -69,7 +69,7 @@ int wait_for(int pid, int *status, int options) {
 
 }  // namespace
 
-/// Starting one program.
+/// The start of one program.
 struct UserProgram::Start {
     Find find;
     double p = 0, q = 0;
@@ -80,7 +80,7 @@ struct UserProgram::Start {
     std::string path;
     std::optional<Result<int>> process;
 
-    /// Finds and starts the program, unless it is dropped meanwhile.
+    /// Finds and starts the program, unless it was dropped in the meantime.
     void run() {
         const Result<std::string> found = find();
         {

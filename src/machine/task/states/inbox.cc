@@ -9,8 +9,8 @@
 namespace mw::task {
 namespace {
 
-/// A pause of a paused program: while the mode changes nothing runs, and waiting commands execute before the
-/// pause.
+/// A pause of a paused program. While the mode changes nothing runs, and waiting commands are executed before
+/// the pause.
 bool isHold(const messages::Command &command) {
     return std::holds_alternative<messages::PauseProgram>(command);
 }
@@ -25,7 +25,7 @@ bool isUrgent(const messages::Command &command) {
     return (mailbox::isStop(command) && !isHold(command)) || isOfMachineState(command);
 }
 
-/// A jog of the joint or axis of `stop`.
+/// True for a jog of the joint or axis of `stop`.
 bool isJogOf(const messages::JogStop &stop, const messages::Command &command) {
     return std::visit(
         [&]<class C>(const C &jog) {

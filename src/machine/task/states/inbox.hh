@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Commands that were delivered but are not yet carried out.
+// Commands that were delivered but not executed yet.
 #pragma once
 
 #include <deque>
@@ -11,8 +11,8 @@
 
 namespace mw::task {
 
-/// Commands in order. While mode or state change, stops and changes of the machine's state go first. One
-/// thread.
+/// Commands in order. While mode or state change, stops and changes of the machine's state are executed
+/// first. One thread.
 class Inbox {
   public:
     void add(std::vector<mailbox::CommandServer::Delivery> deliveries);
@@ -21,9 +21,9 @@ class Inbox {
     std::optional<mailbox::CommandServer::Delivery>
     next_of(const std::function<bool(const messages::Command &)> &isWanted);
     /// Removes waiting commands that came before the stop `stop`, because they would start after it. Lines
-    /// for the operator stay. Returns the numbers of the removed commands.
+    /// for the operator remain. Returns the numbers of the removed commands.
     std::vector<mailbox::Serial> drop_before(mailbox::Serial stop);
-    /// The same for jogs of the joint or axis of the command `stop`.
+    /// As above, for jogs of the joint or axis of the command `stop`.
     std::vector<mailbox::Serial> drop_jogs_before(mailbox::Serial stop, const messages::JogStop &command);
 
   private:

@@ -99,7 +99,7 @@ std::vector<JogGuard::Left> JogGuard::step(const motion::Status &motion) {
         if (state != State::RUNNING) {
             left.push_back({stop_of(target), moving ? text_of(target, jog.owner, state) : ""});
             over.push_back(target);
-        } else if (jog.moved && !moving) {  // at a limit
+        } else if (jog.moved && !moving) {  // stopped at a limit
             over.push_back(target);
         }
     }

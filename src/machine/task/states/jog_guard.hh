@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Continuous jogs of clients in other processes, which end when their client's process ends or does not run.
+// Guards continuous jogs of clients in other processes. They end when their client's process ends or does not
+// run.
 #pragma once
 
 #include <functional>
@@ -19,21 +20,21 @@ namespace mw::task {
 class JogGuard {
   public:
     using State = mailbox::ProcessWatch::State;
-    /// `state_of` and `forget` for the process of a client (mailbox::ProcessWatch).
+    /// Functions `state_of` and `forget` for the process of a client (mailbox::ProcessWatch).
     struct Watch {
         std::function<State(std::uint64_t owner)> state_of;
         std::function<void(std::uint64_t owner)> forget;
     };
     struct Left {
         Command stop;
-        std::string text;  ///< for the operator; empty: nothing moves any more
+        std::string text;  ///< message for the operator; empty: the jog has already stopped
     };
     explicit JogGuard(Watch watch) : watch_(std::move(watch)) {}
 
-    /// Notes an executed command. `owner`: the client's process; 0 if its jogs are not guarded, as for task's
-    /// own process and halui's pins.
+    /// Stores an executed command. `owner` is the client's process; 0 if its jogs are not guarded, as for
+    /// task's own process and halui's pins.
     void note(const Command &command, std::uint64_t owner);
-    /// Once a cycle. Returns jogs to be stopped.
+    /// Called once in each cycle. Returns jogs to be stopped.
     std::vector<Left> step(const motion::Status &motion);
 
   private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The state of the machine: emergency stop, reset, on. Requested states, and the states that the e-stop chain
-// and motion allow.
+// The state of the machine: emergency stop, reset, on. It compares requested states with the states that the
+// e-stop chain and motion allow.
 #pragma once
 
 #include "base/result.hh"
@@ -8,13 +8,14 @@
 
 namespace mw::task {
 
-/// Pure: reports changes; the owners of chain, motion and programs act on them. One thread.
+/// Has no side effects: it reports changes, and the owners of chain, motion and programs act on them. One
+/// thread.
 class MachineState {
   public:
     struct Seen {
         bool isChainClosed = false;     ///< pin iocontrol.0.emc-enable-in
         bool isEstopRequested = false;  ///< this side of the chain is open
-        bool isEnabled = false;         ///< by motion
+        bool isEnabled = false;         ///< motion reports that it is enabled
     };
     enum class Event : std::uint8_t {
         NONE,
@@ -26,25 +27,26 @@ class MachineState {
         Event event = Event::NONE;
         std::optional<Ending> ended;
     };
-    /// Once a cycle, before the commands.
+    /// Called once in each cycle before the commands.
     News step(const Seen &seen);
 
     struct Asked {
-        Result<Progress> outcome;  ///< STARTED: the state changes when chain or motion agree
+        Result<Progress> outcome;  ///< STARTED: the state changes when chain or motion confirm it
         std::optional<Ending> replaced;
     };
     /// Emergency stop and off take effect at once.
     Asked ask(State wanted, mailbox::Serial command, std::int64_t now_ns);
-    /// `order` requests motion to enable.
+    /// Sets `order`, the command that requests motion to enable.
     void set_order(motion::CommandId order) { request_.set_order(order); }
     std::optional<Ending> refuse(motion::CommandId order, const std::string &reason) {
         return request_.refuse(order, reason);
     }
-    /// Once a cycle, after the commands: the requested state is reached, or its time has expired.
+    /// Called once in each cycle after the commands: ends a request whose state is reached or whose time has
+    /// expired.
     std::optional<Ending> end_request(std::int64_t now_ns);
 
     State state() const { return state_; }
-    /// A requested state has not been reached yet.
+    /// True if a requested state has not been reached yet.
     bool isChanging() const { return request_.isUnderWay(); }
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Waiting MDI lines, and taps from clients, after the one that runs ([TASK]MDI_QUEUED_COMMANDS).
+// MDI lines and taps from clients that wait for the running line ([TASK]MDI_QUEUED_COMMANDS).
 #pragma once
 
 #include <deque>
@@ -21,7 +21,7 @@ class MdiQueue {
     struct Line {
         mailbox::Serial command = 0;
         std::string text;
-        std::optional<RigidTapMove> tap;  ///< instead of a text
+        std::optional<RigidTapMove> tap;  ///< a tap instead of a text
         mailbox::Authority authority = mailbox::Authority::OPERATE;
     };
     explicit MdiQueue(int most) : most_(most) {}
@@ -47,10 +47,10 @@ class MdiQueue {
     /// Spindle synchronisation of later taps from clients.
     void set_sync(const SetSpindleSync &sync) { sync_ = sync; }
     const SetSpindleSync &sync() const { return sync_; }
-    /// The starting line is this tap.
+    /// Marks the starting line as this tap.
     void set_tap(const gcode::TapMove &tap) { tap_ = tap; }
     std::optional<gcode::TapMove> take_tap() { return std::exchange(tap_, std::nullopt); }
-    /// Removes and returns all of them.
+    /// Removes and returns all lines.
     std::vector<mailbox::Serial> drop() {
         std::vector<mailbox::Serial> dropped;
         for (const Line &line : waiting_) {

@@ -22,7 +22,7 @@ class MotionOrders {
                std::int64_t timeout_ns = CHANGE_TIMEOUT_NS) {
         waiting_.push_back({command, order, reader, now_ns + timeout_ns});
     }
-    /// Motion has rejected `order`; nothing when it is not one of these.
+    /// Called when motion has rejected `order`; nothing if it is not one of these commands.
     struct Refused {
         Ending ending;
         RefusalIsFor reader = RefusalIsFor::EVERYBODY;
@@ -37,8 +37,8 @@ class MotionOrders {
         }
         return std::nullopt;
     }
-    /// The oldest command that motion has done, or has not answered in time; call until there is none.
-    /// `isAnswered` returns whether a command has been answered.
+    /// The oldest command that motion has done, or has not answered in time. Call it until it returns
+    /// nothing. `isAnswered` returns whether a command has been answered.
     template <class Predicate>
     std::optional<Ending> next(const Predicate &isAnswered, std::int64_t now_ns) {
         for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {

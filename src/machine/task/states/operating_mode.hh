@@ -10,26 +10,26 @@ namespace mw::task {
 /// A run continues only in coordinated mode. One thread.
 class OutOfModeWatch {
   public:
-    /// Once a cycle; true: motion has not been in that mode for too long.
+    /// Called once in each cycle; true if motion has not been in that mode for too long.
     bool step(bool is_out, std::int64_t now_ns);
 
   private:
     std::optional<std::int64_t> since_ns_;
 };
 
-/// A change is complete when motion has made it. One thread.
+/// A change is complete when motion has changed its mode. One thread.
 class OperatingMode {
   public:
     /// `order` has requested `motion_mode`; an earlier change must have ended. `may_move_joints`: manual mode
-    /// is also possible with joint jogging only.
+    /// is also possible with only joint jogging.
     void begin(Mode mode, motion::Mode motion_mode, mailbox::Serial command, motion::CommandId order,
                std::int64_t now_ns, bool may_move_joints = false);
     bool isChanging() const { return request_.isUnderWay(); }
     motion::CommandId order() const { return request_.order(); }
-    /// Once a cycle. `answered`: motion has answered the command.
+    /// Called once in each cycle. `answered`: motion has answered the command.
     std::optional<Ending> step(bool answered, motion::Mode motion_mode, std::int64_t now_ns);
-    /// Once a cycle while nothing runs: a motion controller that has left coordinated mode by itself (lost
-    /// homes, misaligned gantry) accepts no path. The mode must be selected again.
+    /// Called once in each cycle while nothing runs. A motion controller that has left coordinated mode by
+    /// itself (lost homes, misaligned gantry) accepts no path, so the mode must be selected again.
     void follow(motion::Mode motion_mode);
     std::optional<Ending> refuse(motion::CommandId order, const std::string &reason) {
         return request_.refuse(order, reason);
@@ -41,24 +41,25 @@ class OperatingMode {
 
     /// A stop of a run or jog was requested.
     void note_stop(std::int64_t now_ns) { braked_ns_ = now_ns; }
-    /// A jog was requested: later motion is more than braking.
+    /// Called when a jog was requested; later motion is then not only braking.
     void note_jog() { braked_ns_.reset(); }
-    /// Once a cycle. Braking lasts as long as `moving` after a stop: a heavy axis brakes for seconds.
+    /// Called once in each cycle. Braking after a stop lasts as long as `moving`; a heavy axis brakes for
+    /// seconds.
     void watch_rest(bool moving, std::int64_t now_ns);
     /// Motion has rejected `order` because the machine is moving. True: it brakes after a stop, and the
     /// change waits for standstill.
     bool waits_for_rest(motion::CommandId order, std::int64_t now_ns);
     bool isWaitingForRest() const { return isChanging() && is_waiting_for_rest_; }
-    /// It is stopped: `order` requests the mode again.
+    /// Called at standstill: `order` requests the mode again.
     void ask_again(motion::CommandId order, std::int64_t now_ns);
     motion::Mode wanted_motion_mode() const { return wanted_motion_mode_; }
 
-    /// Motion has rejected `order` for axes, and joints are sufficient.
+    /// True if motion has rejected `order` for axes, and joints are sufficient.
     bool isForJointsToo(motion::CommandId order) const {
         return isChanging() && order == request_.order() && may_move_joints_ &&
                wanted_motion_mode_ == motion::Mode::TELEOP;
     }
-    /// `order` requests joint mode instead.
+    /// Called when `order` requests joint mode instead.
     void fall_back(motion::CommandId order) {
         wanted_motion_mode_ = motion::Mode::FREE;
         request_.set_order(order);
@@ -69,7 +70,8 @@ class OperatingMode {
 
     Mode mode_ = Mode::MANUAL, wanted_ = Mode::MANUAL;
     motion::Mode wanted_motion_mode_ = motion::Mode::FREE;
-    std::optional<std::int64_t> braked_ns_;  ///< time of the last cycle in which it braked after a stop
+    std::optional<std::int64_t> braked_ns_;  ///< time of the last cycle in which the machine braked after a
+                                             ///< stop
     bool is_waiting_for_rest_ = false, may_move_joints_ = false;
     Request request_;
 };

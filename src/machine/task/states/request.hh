@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One command of the operator, from its start to its only result.
+// One command of the operator, from its start to its result.
 #pragma once
 
 #include <cstdint>
@@ -32,21 +32,21 @@ class Request {
         order_ = 0;
     }
     void set_deadline(std::int64_t deadline_ns) { deadline_ns_ = deadline_ns; }
-    /// The command sent to motion for it.
+    /// Sets the command that was sent to motion for it.
     void set_order(motion::CommandId order) { order_ = order; }
     motion::CommandId order() const { return order_; }
 
     bool isUnderWay() const { return command_ != 0; }
     bool isLate(std::int64_t now_ns) const { return isUnderWay() && now_ns > deadline_ns_; }
 
-    /// Nothing when none is active.
+    /// Ends the command; nothing if none is active.
     std::optional<Ending> end(Progress progress, std::string reason = {}) {
         if (!isUnderWay()) {
             return std::nullopt;
         }
         return Ending{std::exchange(command_, 0), progress, std::move(reason)};
     }
-    /// Motion has rejected `order`: nothing when it does not belong to this command.
+    /// Called when motion has rejected `order`; nothing if it does not belong to this command.
     std::optional<Ending> refuse(motion::CommandId order, const std::string &reason) {
         return order_ != 0 && order == order_ ? end(Progress::REFUSED, reason) : std::nullopt;
     }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which command is taken in which situation: every command in every situation, and random sequences against a
-// small model that knows no table.
+// Checks every command in every situation, and random sequences against a small model without tables.
 #include <random>
 
 #include "machine/task/run/admission.hh"
@@ -85,7 +84,7 @@ TEST_F(SituationsTest, EveryCommandInEverySituationIsTakenOrRefusedAsTheTableSay
             SCOPED_TRACE(std::string(declaration->name) + " in " + std::to_string(at));
             const Command command = sound(declaration->number);
             if (class_of(command, Mode::MANUAL) == CommandClass::OF_THE_MAILBOX) {
-                continue;  // they do not reach task
+                continue;  // these commands do not reach task
             }
             enter(situation);
             const char *const refusal = refusal_of(class_of(command, task.status().task.mode), situation);
@@ -222,7 +221,7 @@ class ModelTest : public SituationsTest {
         case 20: give(JogContinuous{true, 0, 1}, "jog"); break;
         default:
             story += " let_go";
-            motion.isHolding = model.run == Model::Run::HELD;  // as a paused motion controller
+            motion.isHolding = model.run == Model::Run::HELD;  // behaves as a paused motion controller
             model.let_go();
             cycles(200);
             motion.isHolding = true;
@@ -238,7 +237,7 @@ class ModelTest : public SituationsTest {
     }
     Model model;
     int taken = 0, refused = 0;
-    std::string story;  ///< commands since the seed
+    std::string story;  ///< the commands so far
 };
 
 TEST_F(ModelTest, RandomCommandsDoWhatASmallModelSays) {

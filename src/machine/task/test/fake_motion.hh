@@ -38,14 +38,14 @@ class FakeMotion {
     bool isHolding = false;
     bool rejecting_moves = false;
     bool mode_stuck = false;
-    motion::Reason teleop_refusal = motion::Reason::NONE;  ///< for each change to axes
-    motion::Reason jog_refusal = motion::Reason::NONE;     ///< for each continuous jog
+    motion::Reason teleop_refusal = motion::Reason::NONE;  ///< answer to each change to axis jogs
+    motion::Reason jog_refusal = motion::Reason::NONE;     ///< answer to each continuous jog
     motion::Reason setting_refusal = motion::Reason::NONE;
     motion::JogContinuous last_jog;
     motion::CommandBody last;  ///< last immediate command
     motion::RigidTap last_tap;
-    double corner_scale = -1;  ///< of the last move
-    double tolerance = -1;     ///< of the last move
+    double corner_scale = -1;  ///< corner scale of the last move
+    double tolerance = -1;     ///< tolerance of the last move
 
   private:
     void take(const motion::Command &command) {

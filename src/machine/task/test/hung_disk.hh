@@ -8,7 +8,7 @@
 
 namespace mw::task::test {
 
-/// A disk that hangs until the test lets it work.
+/// A disk that blocks until the test releases it.
 class HungDisk final : public LogDisk {
   public:
     Result<int> open(const std::string &path, bool appending, const Confinement *confinement) override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Limits, following errors, backlash and homing parameters that clients set while the machine runs.
+// Tests limits, following errors, backlash and homing parameters that clients set while the machine runs.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {

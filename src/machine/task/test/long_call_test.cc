@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stops while the interpreter waits for a file or a script.
+// Tests stops while the interpreter waits for a file or a script.
 #include <semaphore>
 #include <thread>
 
@@ -8,7 +8,7 @@
 namespace mw::task {
 namespace {
 
-/// The test controls how long #<_hal[slow]> takes.
+/// The test controls the duration of #<_hal[slow]>.
 class LongCallTest : public TaskTest {
   protected:
     LongCallTest() {
@@ -18,7 +18,7 @@ class LongCallTest : public TaskTest {
             return 5.0;
         };
     }
-    /// Runs cycles until one is in the call.
+    /// Runs cycles until a cycle is in the call.
     void enter() {
         stepping = std::thread([this] {
             while (!left) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines of MDI that wait behind the one that runs.
+// Tests MDI lines that wait for the running line.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {

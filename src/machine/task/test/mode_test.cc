@@ -77,7 +77,7 @@ TEST_F(TaskTest, AChangeOfModeAfterAStopWaitsUntilTheMachineStands) {
         motion.status.isInPosition = false;
         post(stop);
         const auto change = post(SetMode{Mode::MDI});
-        cycles(9000);  // a heavy axis
+        cycles(9000);  // the braking time of a heavy axis
         EXPECT_EQ(progress(change), Progress::STARTED);
         EXPECT_EQ(task.status().task.mode, Mode::MANUAL);
         motion.status.isInPosition = true;

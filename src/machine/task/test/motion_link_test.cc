@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Task's side of the motion channels against a realtime process that runs beside it.
+// Tests task's side of the motion channels with a realtime process in parallel.
 #include <functional>
 #include <memory>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Operators' commands that motion carries out by itself: they end with its answer.
+// Tests operators' commands that motion executes by itself; they end with its answer.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {

@@ -88,7 +88,7 @@ TEST_F(ParameterFileTest, AStopAndAnErrorKeepWhatIsInForce) {
     EXPECT_EQ(value_after_power_cut(5242), 4.0);
 }
 
-/// The awaited write is newer than the text that waited for the writer.
+/// The awaited write is newer than the text that waits in the writer.
 TEST_F(ParameterFileTest, AnOlderTextNeverComesOverANewerOne) {
     ASSERT_EQ(mdi("G10 L2 P1 X1"), Progress::DONE);
     ASSERT_EQ(mdi("G10 L2 P1 X2"), Progress::DONE);

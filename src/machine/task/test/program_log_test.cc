@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Logs of programs on disks that work, are full, or hang.
+// Tests logs of programs on disks that work, are full, or do not answer.
 #include <sys/resource.h>
 
 #include <chrono>
@@ -92,7 +92,7 @@ TEST(ProgramLog, AHungDiskHoldsUpNobodyAndNoLineIsLost) {
     EXPECT_NE(log.take_delay().value().find("has not answered for 1 s"), std::string::npos);
     EXPECT_FALSE(log.take_delay().has_value()) << "it is reported once";
     disk->release();
-    while (text_of(folder / "log") != expected) {  // otherwise this test times out
+    while (text_of(folder / "log") != expected) {  // otherwise this test ends with a timeout
         std::this_thread::yield();
     }
     EXPECT_FALSE(log.take_failure().has_value());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A paused program whose operator stops the spindle, jogs away and comes back.
+// Tests a paused program whose operator stops the spindle, jogs away and returns.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {
@@ -7,7 +7,7 @@ namespace {
 
 class ReturnTest : public TaskTest {
   protected:
-    /// Pauses in the middle: X 7 is active, Z 0 and X 8 wait.
+    /// Pauses in the middle of a move: X 7 is active, Z 0 and X 8 wait.
     client::Serial hold() {
         motion.status.axis[geometry::AXIS_Z].max_limit = 40;
         open("G21 F600 G90 G61\nS500 M3 M8\nG1 X3\nM0\nG1 X7 F300\nG1 X8\nM2\n");
@@ -74,8 +74,8 @@ TEST_F(ReturnTest, ItComesBackByTheWayThatIsConfirmedAndGoesOn) {
     EXPECT_EQ(joined(), "line 20, spindle 500, line 3, line 3, line 7, line 8, spindle off");
 }
 
-/// The loaded tool must not be taken for one that the operator loaded, which could not be changed back: only
-/// an abort would be possible.
+/// The loaded tool must not be treated as loaded by the operator, because it could then not be changed back
+/// and only an abort would be possible.
 TEST_F(ReturnTest, AProgramThatIsHeldInAToolChangeGoesOnWithItsTool) {
     open("G21 F600\nT5 M6\nG1 X3\nM2\n");
     io.changer_working = false;

@@ -38,7 +38,7 @@ class ConfinementTest : public testing::Test {
         confinement.program_extensions = {".ngc", ".py"};
     }
     ~ConfinementTest() override { fs::remove_all(root); }
-    /// Why a log cannot be opened; empty if it can.
+    /// The reason why a log cannot be opened; empty if it can.
     std::string refusal(const std::string &path, bool appending = false) const {
         const auto opened = open_log(confinement, path, appending);
         if (opened.has_value()) {
@@ -241,7 +241,7 @@ TEST_F(RightsTest, APlaceThatIsUsedAgainDoesNotKeepItsRights) {
         << "authority is never given back";
 }
 
-/// Jogs of processes that the test runs, stops and ends.
+/// Tests with jogs of processes that the test runs, stops and ends.
 class JogGuardTest : public testing::Test {
   protected:
     using State = JogGuard::State;
@@ -298,15 +298,15 @@ TEST_F(JogGuardTest, WhatHasEndedOrBelongsToAnotherIsLeftAlone) {
     begin();
     guard.note(JogStop{true, 1}, 0);
     begin();
-    guard.note(JogContinuous{true, 1, 2.0}, 0);  // a pin of halui takes over
+    guard.note(JogContinuous{true, 1, 2.0}, 0);  // a pin of halui takes over the jog
     begin();
     guard.note(JogIncrement{true, 1, 2.0, 1.0}, OWNER);
     begin();
     guard.note(AbortAll{}, OWNER);
     begin();
-    move(false);  // at its limit
+    move(false);  // the joint is at its limit
     EXPECT_EQ(stopped(), "");
-    move(true);  // jogged by a wheel
+    move(true);  // the joint is jogged by a wheel
     state = State::ENDED;
     EXPECT_EQ(stopped(), "");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// RunProgram from a line: what a client sees and confirms, and the moves that follow.
+// Tests RunProgram from a line: the proposal that a client sees and confirms, and the moves that follow.
 #include "machine/task/test/task_rig.hh"
 
 namespace mw::task {
@@ -9,7 +9,7 @@ class RunFromLineTest : public TaskTest {
   protected:
     static constexpr const char *PROGRAM =
         "G21 F600\nT5 M6\nS800 M3 M8\nG0 X10 Z5\nG1 Z-1\nG1 X20\nG1 X30\nM2\n";
-    /// Starts and calculates.
+    /// Starts the program and calculates the state.
     client::Serial from(const std::string &text, int line) {
         motion.status.axis[geometry::AXIS_Z].max_limit = 40;
         open(text);

@@ -70,7 +70,7 @@ TEST(ModalCodeHistory, TellsWhatHoldsInTheBlockUnderWay) {
     trail.note(0, with_feed(100, 0));
     trail.note(3, with_feed(100, 3));
     trail.note(4, with_feed(200, 4));
-    trail.note(4, with_feed(300, 4));  // waits for the machine and is noted again
+    trail.note(4, with_feed(300, 4));  // the block waits for the machine and is noted again
     trail.note(7, with_feed(400, 9));
     EXPECT_EQ(trail.at(0, 1).settings[1], 100);
     EXPECT_EQ(trail.at(3, 3).settings[1], 100);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every event in every state. The expectations are rules about a run, not a copy of the table.
+// Tests every event in every state. The expectations are rules about a run, not a copy of the table.
 #include <string>
 #include <vector>
 
@@ -35,7 +35,7 @@ RunState in(RunPhase phase, Hold hold) {
     case RunPhase::SYNCHING: way = {START, BEGUN, SYNC}; break;
     case RunPhase::FINISHING: way = {START, BEGUN, READ}; break;
     }
-    // Before a program begins nothing can be released: it is proposed, then read.
+    // Before a program begins it cannot be released; it is proposed, then read.
     const std::vector<RunEvent> held = hold == Hold::HELD       ? std::vector{PAUSE}
                                        : hold == Hold::STOPPED  ? std::vector{PROGRAM_STOP}
                                        : hold == Hold::STEPPING ? std::vector{PAUSE, STEP}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Starts from a line. A program that was calculated up to a line must make the same calls from there, bit by
-// bit, as one that has run from its start on a separate machine written for this test.
+// Tests starts from a line. A program that was calculated up to a line must make the same calls from there,
+// bit by bit, as a run from its start on a separate machine written for this test.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -98,7 +98,7 @@ struct Shop {
         }
         return step == gcode::Step::OK || step == gcode::Step::SYNC;
     }
-    /// True when it has reached its end.
+    /// Runs the program; true when it has reached its end.
     bool run() {
         int lines = 0;
         while (lines < MOST_LINES && step()) {
@@ -146,7 +146,7 @@ std::string kind_of(const std::string &refusal) {
     return "the program fails: " + refusal.substr(0, 40);
 }
 
-/// Checks every line of the main program, or each `stride`th of a long one.
+/// Checks every line of the main program, or every `stride`th line of a long program.
 void judge(const std::string &path, Count &count) {
     SCOPED_TRACE(path);
     Shop whole(path);
@@ -248,7 +248,7 @@ class SearchTest : public testing::Test {
     static std::string path() {
         return (files::temp_directory_path() / ("mw_search_" + std::to_string(::getpid()) + ".ngc")).string();
     }
-    /// The rejection, empty when a start is possible.
+    /// The reason of the rejection; empty if a start is possible.
     std::string refusal(const std::string &text, int line) {
         std::ofstream(path()) << text;
         Shop shop(path());

@@ -70,7 +70,8 @@ TEST_F(ProgramSpindlesTest, StartWithTheSpeedThatWasSetAndFollowANewOne) {
     EXPECT_EQ(spindles.speed(0), 700);
 }
 
-/// A move that waits begins from standstill: after G97 S300 and M5 a stop in a corner would be unnecessary.
+/// A move that waits for the spindle begins from standstill. After G97 S300 and M5 such a stop in a corner
+/// would be unnecessary.
 TEST_F(ProgramSpindlesTest, NobodyWaitsForOneThatWasStopped) {
     spindles.set_speed({0, 300, 0}, link);
     spindles.start({0, true, true}, link);
@@ -288,7 +289,7 @@ TEST(UserProgram, IsEndedWithAllThatItStarted) {
     }
 }
 
-/// A look-up that waits until the test releases it.
+/// A search that waits until the test releases it.
 struct HungLookUp {
     std::latch isCalled{1}, isReleased{1};
 };
@@ -407,7 +408,7 @@ TEST_F(PlannerModeTest, SaysOnceWhatIsWrongWithTheCornerScaleAndWhatIsInForce) {
     ASSERT_EQ(posted.size(), 1U);
     EXPECT_EQ(posted[0], "ini.traj-scurve-peak-scale is nan: a number from 0.1 to 1 expected; 0.5 is used");
     for (int cycle = 0; cycle < 100; ++cycle) {
-        mode.set_corner_scale(7 + cycle);  // a signal that changes
+        mode.set_corner_scale(7 + cycle);  // a signal whose value changes
     }
     ASSERT_EQ(posted.size(), 2U);
     EXPECT_EQ(posted[1], "ini.traj-scurve-peak-scale is 7: a number from 0.1 to 1 expected; 1 is used");

@@ -31,7 +31,7 @@ class SequencerTest : public testing::Test {
         line.end[geometry::AXIS_X] = x;
         add(line, block);
     }
-    /// A task cycle. Motion answers its commands, and moves only if permitted.
+    /// Runs a task cycle. Motion answers its commands, and moves only if permitted.
     void cycle(bool moving = true) {
         now_ns += MS;
         motion::Command command;
@@ -120,7 +120,7 @@ TEST_F(SequencerTest, MovesGoOnAtOnceAndASpindleWaitsUntilTheyAreDone) {
     EXPECT_TRUE(failures.empty());
 }
 
-/// Kinematics may read the pins: no move begins with those of the previous block.
+/// Kinematics may read the pins, so no move begins with the pins of the previous block.
 TEST_F(SequencerTest, AMoveBehindAToolOffsetWaitsUntilThePinsShowIt) {
     add_line(1);
     add(gcode::UseToolOffset{{{0, 0, 5}}});

@@ -5,7 +5,7 @@
 namespace mw::task {
 namespace {
 
-/// Modal codes are those of the current move, however far the program is read ahead.
+/// Modal codes are those of the current move, independent of the number of blocks read ahead.
 TEST_F(TaskTest, ShowsTheModesOfTheMoveUnderWay) {
     open("G21 G61\nG1 X1 F100\nG64 P0.5 Q0.1\nG91 G1 X1 F200\nM2\n");
     motion.isHolding = true;

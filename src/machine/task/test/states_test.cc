@@ -234,7 +234,7 @@ TEST(Inbox, KeepsTheOrderAndLetsStopsPassWhileTheModeChanges) {
     EXPECT_FALSE(inbox.next(false).has_value());
 }
 
-/// True if it is returned while the mode changes.
+/// True if the command is executed while the mode changes.
 bool isTakenWhileTheModeChanges(const Command &command) {
     Inbox inbox;
     inbox.add({{1, 1, command}});

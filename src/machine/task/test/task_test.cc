@@ -26,7 +26,7 @@ TEST_F(TaskTest, AUserCodeRunsWithItsWordsAndIsAwaited) {
     EXPECT_EQ(second, "1.000000 2.000000");
 }
 
-/// A collet that does not close: no move may follow.
+/// A collet that does not close: no later move may start.
 TEST_F(TaskTest, AUserCodeThatFailsStopsTheProgram) {
     make_program("M102", "exit 3\n");
     open("G21 F600\nG1 X1\nM102\nG0 X77\nM2\n");
@@ -94,7 +94,7 @@ TEST_F(TaskTest, HomingOfAnotherJointWaitsForTheFirst) {
     cycles(3);
     const auto second = post(HomeJoint{1});
     cycles(3);
-    for (const int joint : {0, 1, -1}) {  // active, waiting, all
+    for (const int joint : {0, 1, -1}) {  // active joint, waiting joint, all joints
         EXPECT_EQ(ask(HomeJoint{joint}, 3), Progress::REFUSED);
         EXPECT_NE(reason(request).find("homing"), std::string::npos);
     }
@@ -150,7 +150,7 @@ TEST_F(TaskTest, AxesAreMovedByHandOnceAllJointsAreHomed) {
     EXPECT_EQ(ask(SetMode{Mode::MDI}), Progress::DONE);
     EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
     EXPECT_EQ(motion.status.mode, MotionMode::TELEOP);
-    // Requested again it is the same mode, but nothing changes during motion.
+    // Requesting the same mode again succeeds, but nothing changes during motion.
     EXPECT_EQ(ask(SetTeleop{false}), Progress::DONE);
     motion.status.isInPosition = false;
     EXPECT_EQ(ask(SetMode{Mode::MANUAL}), Progress::DONE);
@@ -331,7 +331,7 @@ TEST_F(TaskTest, ATableOfScrewErrorsIsReadWhileTheMachineIsOff) {
     EXPECT_TRUE(task.isConfigured().value_or(false));
 }
 
-/// Clients may exist before a machine has started: their rejected commands do not end its start.
+/// Clients may exist before a machine has started; their rejected commands do not end its start.
 TEST_F(TaskTest, WhyASettingWasRefusedIsToldApartFromWhatClientsAre) {
     task.configure({});
     ask(SetState{State::ESTOP});

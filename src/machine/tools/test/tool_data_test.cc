@@ -37,7 +37,7 @@ class ToolDataTest : public ::testing::Test {
         config_.is_random_toolchanger = random;
         return open();
     }
-    /// Opens a database program with this shell script, which logs its input.
+    /// Opens a database program: this shell script, which logs its input.
     task::ToolStore &open_database(const std::string &script, bool random = false) {
         write("db", "#!/bin/sh\n" + script);
         std::filesystem::permissions(path("db"), std::filesystem::perms::owner_all);
@@ -70,7 +70,7 @@ class ToolDataTest : public ::testing::Test {
     std::string error_;
 };
 
-/// Answers g with two tools, everything else with FINI, and writes a log.
+/// Answers g with two tools and everything else with FINI, and writes a log.
 constexpr const char *GOOD = R"sh(echo v2.1
 echo "$1 $2" > log
 while read -r line; do
@@ -220,7 +220,7 @@ TEST_F(ToolDataTest, LinesThatContradictEachOtherAreNotAddedToNorLeftBehind) {
 
 TEST_F(ToolDataTest, AChangeThatCannotBeKeptHasNotHappened) {
     task::ToolStore &tools = open_file("T1 P1\nT2 P2\n");
-    std::filesystem::remove_all(folder_);  // it is not writable
+    std::filesystem::remove_all(folder_);  // the folder is missing, so the file cannot be written
     EXPECT_FALSE(tools.add(tool_of(3, 3)).has_value());
     EXPECT_EQ(tools.index_of_tool(3), -1);
     EXPECT_FALSE(tools.remove(1).has_value());
@@ -327,7 +327,7 @@ TEST_F(ToolDataTest, AFailedWriteIsReportedAndWrittenAgain) {
     for (const bool is_changed_again : {true, false}) {
         journal::Writer writer(journal::system_disk(), "", journal::Works::ALONE);
         tools_ = *open_tools(config_, sink_, {&writer, false});
-        std::filesystem::rename(path("m"), away);  // it is not writable
+        std::filesystem::rename(path("m"), away);  // the folder is missing, so the file cannot be written
         gcode::ToolEntry entry = tools_->entry(1);
         entry.offset[geometry::AXIS_Z] = 2;
         EXPECT_TRUE(tools_->set_entry(1, entry).has_value()) << "the program continues";
