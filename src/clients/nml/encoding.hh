@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The forms that a message takes as bytes.
+// The encodings of a message as bytes.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 namespace mw::nml {
 
 enum class Encoding : std::uint8_t {
-    RAW,      ///< as this processor keeps numbers
+    RAW,      ///< numbers in the format of this processor
     XDR,      ///< External Data Representation, RFC 4506: for other hosts
     ASCII,    ///< values as text, one after the other
-    DISPLAY,  ///< a line "name=value" for each value, for people
+    DISPLAY,  ///< a line "name=value" for each value, for persons
 };
 inline constexpr std::array ALL_ENCODINGS{Encoding::RAW, Encoding::XDR, Encoding::ASCII, Encoding::DISPLAY};
 

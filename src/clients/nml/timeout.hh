@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How long an access to a buffer may wait (F4).
+// Maximum wait of an access to a buffer (F4).
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace mw::nml {
 
 struct Timeout {
-    /// Above 0: so long. 0: only when it can be had at once. Below 0 or infinite: until it can be had. [s]
+    /// Above 0: time limit. 0: no wait. Below 0 or infinite: no limit. [s]
     double seconds = std::numeric_limits<double>::infinity();
 
     bool isForever() const { return seconds < 0 || std::isinf(seconds); }

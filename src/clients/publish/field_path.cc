@@ -66,7 +66,7 @@ std::string_view FieldPath::first_of(std::string_view paths) {
 }
 
 Value FieldPath::read(const messages::MachineStatus &status, int index) const {
-    // The accessors of a declaration take any object; nothing is written here.
+    // The accessors of a declaration take a non-const object, but nothing is written here.
     void *at = const_cast<messages::MachineStatus *>(&status);
     for (std::size_t i = 0; i < count_; ++i) {
         const messages::Type &type = fields_[i]->type;

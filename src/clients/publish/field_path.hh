@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A field of the status by its path of names, "joints.pos_fb", as the declarations have them.
+// A field of the status by its path of names, as in "joints.pos_fb".
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace mw::publish {
 
-/// At most one part of a path has several elements: `index` selects one.
+/// At most one part of a path is an array; `index` selects its element.
 class FieldPath {
   public:
-    /// Nothing when the status has no such field, or when it has parts itself.
+    /// Nothing if the status has no such field, or if the field has parts.
     static std::optional<FieldPath> find(std::string_view path);
-    /// The first of several paths that are separated by blanks.
+    /// The first of several paths separated by blanks.
     static std::string_view first_of(std::string_view paths);
 
     Value read(const messages::MachineStatus &status, int index) const;
@@ -33,10 +33,10 @@ class FieldPath {
     std::size_t count_ = 0;
 };
 
-/// Paths of all fields of the status that have no parts.
+/// Paths of all fields of the status without parts.
 std::vector<std::string> all_fields();
 
-/// Of the field, or of what is calculated.
+/// Type of the field, or of the calculated value.
 DataType type_of(const Row &row);
 
 }  // namespace mw::publish

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The published values of one machine: its axes, joints and spindles, each value with name, type and unit.
+// The published values of one machine (axes, joints, spindles), each with name, type and unit.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace mw::publish {
 
-/// A published value without its current value.
+/// Description of a published value.
 struct Metric {
     std::string name{};
     DataType type = DataType::DOUBLE;
@@ -19,33 +19,33 @@ struct Metric {
     double deadband = 0;
     /// Null for messages to the operator.
     const Row *row = nullptr;
-    int index = 0;  ///< of axis, joint or spindle
+    int index = 0;  ///< number of the axis, joint or spindle
 
     bool operator==(const Metric &other) const = default;
 };
 
 struct Change {
-    std::size_t metric = 0;  ///< index among the metrics
+    std::size_t metric = 0;  ///< index of the metric
     Value value;
 };
 
-/// Deadbands by the names of rows, instead of those of the table.
+/// Deadbands by the names of rows, which replace those of the table.
 using Deadbands = std::map<std::string, double, std::less<>>;
 
-/// One thread. Reports a value when it has changed by its deadband since it was reported last.
+/// One thread. Reports a value when it differs from the last reported value by at least its deadband.
 class Readings {
   public:
     explicit Readings(Deadbands deadbands = {}) : deadbands_(std::move(deadbands)) {}
 
     /// Adapts the metrics to the axes, joints, spindles and units of the machine.
     void fit(const messages::MachineStatus &status);
-    /// The metrics do not fit this machine.
+    /// True if the metrics do not fit this machine.
     bool isOther(const messages::MachineStatus &status) const;
     const std::vector<Metric> &metrics() const { return metrics_; }
-    /// Of all metrics; they count as reported.
+    /// Values of all metrics, which then count as reported.
     std::vector<Value> all(const messages::MachineStatus &status);
     std::vector<Change> changes(const messages::MachineStatus &status);
-    /// The metrics of a message. `id` is unique.
+    /// The metrics of a message; `id` is unique.
     std::vector<Change> message(const std::string &kind, const std::string &text,
                                 const std::string &id) const;
 
@@ -53,7 +53,7 @@ class Readings {
     Value read(std::size_t metric, const messages::MachineStatus &status) const;
     void add(const Row &row, int index, const std::string &place, const messages::MachineStatus &status);
 
-    /// What decides which metrics there are.
+    /// Properties of the machine that determine the metrics.
     struct Shape {
         std::uint32_t axes = 0, angular_joints = 0;
         int joints = 0, spindles = 0;
@@ -66,11 +66,11 @@ class Readings {
     Deadbands deadbands_;
     Shape shape_;
     std::vector<Metric> metrics_;
-    std::vector<FieldPath> paths_;  ///< of the metrics, without those of messages
+    std::vector<FieldPath> paths_;  ///< paths of the metrics, without those of messages
     std::vector<Value> reported_;
 };
 
-/// The unit of a field for one machine: "mm" for machine units, "deg" for degrees of a rotary axis.
+/// The unit of a field for one machine: "mm" for machine units, "deg" for the degrees of a rotary axis.
 std::string unit_of(const Row &row, int index, const messages::MachineStatus &status);
 
 }  // namespace mw::publish

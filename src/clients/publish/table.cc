@@ -74,7 +74,7 @@ Value limit_fault(const MachineStatus &status, int) {
     return text;
 }
 
-/// "G1 G17 G54", of codes that are multiplied by `scale`.
+/// Codes that are multiplied by `scale`, as "G1 G17 G54".
 template <std::size_t N>
 std::string code_words(const std::array<int, N> &codes, char letter, int scale) {
     std::string text;
@@ -108,9 +108,9 @@ Value dwell_left(const MachineStatus &status, int) {
     return status.task.delay_left_s;
 }
 
-constexpr double NEAR = 0.001;  ///< of positions [machine units, degrees]
-constexpr double SPEED = 0.01;  ///< [machine units/s]
-constexpr double TURNS = 0.1;   ///< of spindles [rev/s]
+constexpr double NEAR = 0.001;  ///< deadband of positions [machine units, degrees]
+constexpr double SPEED = 0.01;  ///< deadband of speeds [machine units/s]
+constexpr double TURNS = 0.1;   ///< deadband of spindles [rev/s]
 
 constexpr Item item(Component component, Category category, const char *type, const char *sub_type = "",
                     const char *units = "", Form form = Form::PLAIN) {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::string_view REPLACEMENT = "\xEF\xBF\xBD";
 
-/// Bytes of the character at the front of `text`; 0: it is not valid.
+/// Size of the character at the front of `text`; 0 if it is not valid. [bytes]
 std::size_t character_size(std::string_view text) {
     const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned first = byte(0);

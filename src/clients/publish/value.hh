@@ -12,7 +12,7 @@ namespace mw::publish {
 /// Nothing: the machine does not know the value.
 using Value = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string>;
 
-/// Types of values by their numbers in Sparkplug B.
+/// Types of values, with their numbers in Sparkplug B.
 enum class DataType : std::uint8_t { INT64 = 4, UINT64 = 8, DOUBLE = 10, BOOLEAN = 11, STRING = 12 };
 
 const char *name_of(DataType type);

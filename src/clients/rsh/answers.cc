@@ -35,7 +35,7 @@ Answer on_off(const char *name, bool on) {
 }
 Answer operator_line(const Asked &asked, const char *name, MessageKind kind) {
     const auto text = asked.shared.next_line(kind, asked.own.lines);
-    // A line of the protocol is one line.
+    // An answer of the protocol has one line.
     std::string one = text.value_or("OK");
     for (char &c : one) {
         c = c == '\n' || c == '\r' ? ' ' : c;
@@ -75,7 +75,7 @@ Answer program_status(const Asked &asked) {
     return line("PROGRAM_STATUS RUNNING");
 }
 
-/// PROGRAM, which newer versions also call OPEN.
+/// GET PROGRAM, which newer versions also call OPEN.
 Answer program(const Asked &asked) {
     return line("PROGRAM " +
                 legacy::text(legacy::Form::PATH, dialect(asked), asked.status.task.program.str()));
@@ -84,7 +84,7 @@ Answer program(const Asked &asked) {
 Answer program_codes(const Asked &asked) {
     std::string text = "PROGRAM_CODES";
     const auto &g = asked.status.codes.g;
-    for (std::size_t i = 1; i < g.size(); ++i) {  // [0] is the number of the line
+    for (std::size_t i = 1; i < g.size(); ++i) {  // [0] is the line number
         if (g[i] >= 0) {
             text += g[i] % 10 == 0 ? fmt::format(" G{}", g[i] / 10)
                                    : fmt::format(" G{}.{}", g[i] / 10, g[i] % 10);
@@ -94,7 +94,7 @@ Answer program_codes(const Asked &asked) {
         fmt::format("{} F{:g} S{:g}", text, asked.status.codes.settings[1], asked.status.codes.settings[2]));
 }
 
-/// The answer for one spindle, the first without a number, or for all.
+/// The answer for one spindle (the first one without a number), or for all.
 template <class Each>
 Answer for_spindles(const Asked &asked, const Each &each) {
     const auto asked_for = asked.words.empty()
@@ -137,7 +137,7 @@ Answer tool_offset(const Asked &asked) {
     return line(fmt::format("TOOL_OFFSET {:f}", z));
 }
 
-/// A row of the table of the status.
+/// Answers from a row of the status table.
 template <std::size_t I>
 Answer status_answer(const Asked &asked) {
     constexpr const auto &ROW = std::get<I>(legacy::STATUS);
@@ -229,7 +229,7 @@ constexpr auto OF_SPINDLES =
         return Question{std::get<I>(legacy::SPINDLE_STATUS).names.rsh, BOTH, spindle_answer<I>};
     });
 
-/// All, in alphabetical order, as HELP lists them.
+/// All questions in alphabetical order, as HELP lists them.
 const std::vector<Question> &questions() {
     static const std::vector<Question> ALL = [] {
         std::vector<Question> all(std::begin(QUESTIONS), std::end(QUESTIONS));

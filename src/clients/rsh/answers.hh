@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// GET: a table of questions, each with its answer.
+// GET: a table of questions with their answers.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct Asked {
     SharedView &shared;
     OwnState &own;
     const messages::MachineStatus &status;
-    const Words &words;  ///< behind the name of the question
+    const Words &words;  ///< words after the name of the question
 };
 
 inline legacy::Dialect dialect(const Asked &asked) {
@@ -27,10 +27,10 @@ inline legacy::Dialect dialect(const Asked &asked) {
 /// The lines of the answer.
 using Answer = Result<std::vector<std::string>>;
 
-/// `name` in capitals. Nothing: there is no such question.
+/// `name` in capitals. Null if there is no such question.
 using Answering = Answer (*)(const Asked &);
 Answering answering(const Settings &settings, const std::string &name);
-/// For HELP.
+/// Names for HELP.
 std::vector<std::string> question_names(const Settings &settings);
 
 }  // namespace mw::rsh

@@ -10,10 +10,10 @@
 namespace mw::rsh {
 namespace {
 
-/// 2.9 reports so many axes and joints on each machine.
+/// LinuxCNC 2.9 reports this number of axes and joints for each machine.
 constexpr int OLD_COUNT = 6;
 
-/// "NAME a b c", or "NAME 1 b" of the one that is asked for.
+/// "NAME a b c", or "NAME 1 b" for the requested one.
 template <class Each>
 Answer list(const std::string &name, int count, std::optional<int> one, const char *blank, const Each &each) {
     if (one.has_value()) {
@@ -56,7 +56,7 @@ Answer of_joints(const Asked &asked, const char *name, const char *blank, const 
     });
 }
 
-/// 2.9 reports machine units with any conversion.
+/// LinuxCNC 2.9 reports machine units with any conversion.
 double factor(const Asked &asked, bool isAngular) {
     return asked.settings.isOld() ? 1
            : isAngular            ? angle_factor(asked.own.angle_unit, asked.status)
@@ -67,7 +67,7 @@ double factor_of_axis(const Asked &asked, int axis) {
     return factor(asked, geometry::isAngular(axis));
 }
 
-/// A row of the table of joints.
+/// Answers from a row of the joint table.
 template <std::size_t I>
 Answer joint_answer(const Asked &asked) {
     using legacy::Form;
@@ -106,7 +106,7 @@ Answer position_offset(const Asked &asked) {
     if (asked.words.empty()) {
         return pose(asked, "POS_OFFSET", offset);
     }
-    // R, P and W as the manual has them: roll, pitch, yaw, where there are no U, V and W.
+    // R, P and W as in the manual: roll, pitch, yaw, if there are no U, V and W.
     const std::string &word = asked.words[0];
     const int axis = word == "R" || word == "r"   ? geometry::AXIS_A
                      : word == "P" || word == "p" ? geometry::AXIS_B

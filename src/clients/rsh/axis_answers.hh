@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Answers about axes and joints: of all, or of the one that is named.
+// Answers about axes and joints: all, or the named one.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ struct NamedAnswer {
     const char *name;
     Answering answering;
 };
-/// Of legacy::JOINT_STATUS.
+/// Answers from legacy::JOINT_STATUS.
 std::span<const NamedAnswer> joint_answers();
 
 /// The position of all axes, or of the one that is requested.

@@ -6,7 +6,7 @@
 namespace mw::rsh {
 namespace {
 
-/// A jog ends so long after this program has last renewed it.
+/// A jog ends this long after its last renewal.
 constexpr int LEASE_MS = 500;
 constexpr double RENEWAL_S = 0.1;
 
@@ -56,7 +56,7 @@ Result<client::Serial> Commander::stop_jog(const JogTarget &target) {
 
 void Commander::stop_jogs() {
     while (!jogs_.empty()) {
-        // It cannot fail: a stop always has a place.
+        // The stop cannot fail, because the mailbox always has space for stops.
         static_cast<void>(stop_jog(jogs_.back().target));
     }
 }
@@ -70,13 +70,13 @@ void Commander::keep_jogging(double now_s) {
             outcome(jog.serial).progress == messages::Progress::REFUSED) {
             continue;
         }
-        // Beside post(): it is nothing that anybody waits for.
+        // Not through post(), because nobody waits for this command.
         const auto serial = client_->post(
             messages::JogContinuous{jog.target.isJoint, jog.target.index, jog.velocity, LEASE_MS, true});
         jog.serial = serial.value_or(jog.serial);
         jog.renewed_s = now_s;
     }
-    // A limit, an abort or another client has ended it.
+    // A limit, an abort or another client has ended the jog.
     std::erase_if(jogs_, [this](const Jog &jog) {
         const auto progress = outcome(jog.serial).progress;
         return progress == messages::Progress::REFUSED || progress == messages::Progress::FAILED;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The client of the machine that a connection is once it is enabled. What it moves by hand stops with it.
+// The client of the machine for an enabled connection. Its jogs stop when it ends.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ namespace mw::rsh {
 
 using Joining = std::function<Result<client::Client>()>;
 
-/// What a jog moves.
+/// The joint or axis of a jog.
 struct JogTarget {
     bool isJoint = true;
     int index = 0;
     bool operator==(const JogTarget &) const = default;
 };
 
-/// One thread. Continuous jogs have a lease that keep_jogging() renews: they end when this program hangs or
-/// dies, and when it is destroyed.
+/// One thread. Continuous jogs have a lease that keep_jogging() renews. They end when this program hangs or
+/// dies, and when the object is destroyed.
 class Commander {
   public:
     explicit Commander(Joining joining) : joining_(std::move(joining)) {}
@@ -29,11 +29,11 @@ class Commander {
     Commander(const Commander &) = delete;
     Commander &operator=(const Commander &) = delete;
 
-    /// Becomes a client, if it is none yet.
+    /// Becomes a client unless it is one already.
     Result<> connect();
     Result<client::Serial> post(const messages::Command &command);
     client::Outcome outcome(client::Serial serial) { return client_->outcome(serial); }
-    /// The last commands that were asked for together.
+    /// The commands that were posted together last.
     const std::vector<client::Serial> &last() const { return last_; }
     void begin_order() { isFresh_ = true; }
 
@@ -47,7 +47,7 @@ class Commander {
     struct Jog {
         JogTarget target;
         double velocity = 0;
-        client::Serial serial = 0;  ///< of its beginning, then of its last renewal
+        client::Serial serial = 0;  ///< command that started the jog, then its last renewal
         double renewed_s = -1;
     };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a server of text lines has with each connection. Knows no sockets and no clock.
+// The interface of a server of text lines to each connection. It uses no sockets and no clock.
 #pragma once
 
 #include <string>
@@ -12,21 +12,21 @@ class Conversation {
   public:
     virtual ~Conversation() = default;
 
-    /// Bytes of the other side.
+    /// Receives bytes from the peer.
     virtual void take(std::string_view bytes) = 0;
-    /// The other side says no more.
+    /// The peer sends no more data.
     virtual void end_input() = 0;
-    /// No more bytes are wanted now.
+    /// True while no more bytes are accepted.
     virtual bool isFull() const = 0;
-    /// Executes the orders that are ready; `now_s` is of any steady clock.
+    /// Executes the orders that are ready; `now_s` is a monotonic time.
     virtual void step(double now_s) = 0;
     /// Bytes to send; the sender removes them.
     virtual std::string &output() = 0;
-    /// step() is wanted soon, without new bytes.
+    /// True if step() must be called soon, without new bytes.
     virtual bool isBusy() const = 0;
-    /// Everything is answered, and the connection is to be closed.
+    /// True if everything is answered and the connection must be closed.
     virtual bool isOver() const = 0;
-    /// A permitted client has requested the end of the server.
+    /// True if an authorised client has requested the end of the server.
     virtual bool wantsShutdown() const = 0;
 };
 

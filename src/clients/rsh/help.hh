@@ -9,7 +9,7 @@
 
 namespace mw::rsh {
 
-/// Lines about a command, in capitals; without one, which there are.
+/// Lines about a command in capitals; without a name, the list of commands.
 std::vector<std::string> help(const Settings &settings, const std::string &about);
 
 }  // namespace mw::rsh

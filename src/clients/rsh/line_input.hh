@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines out of the bytes of a connection.
+// Splits the bytes of a connection into lines.
 #pragma once
 
 #include <optional>
@@ -8,19 +8,19 @@
 
 namespace mw::rsh {
 
-/// Longest line that is read. [bytes]
+/// Maximum length of a line. [bytes]
 inline constexpr std::size_t MAX_LINE = 4096;
 
-/// One thread. Lines end with any of CR, LF and NUL; empty ones count for nothing.
+/// One thread. Lines end with CR, LF or NUL; empty lines are ignored.
 class LineInput {
   public:
     struct Line {
         std::string text;
-        bool isTooLong = false;  ///< of which nothing is kept but that it was
+        bool isTooLong = false;  ///< the line was too long, and its content is discarded
     };
 
     void take(std::string_view bytes) { input_ += bytes; }
-    /// What is left is a line.
+    /// The remaining bytes are a line.
     void end() { isOver_ = true; }
     std::optional<Line> next();
 

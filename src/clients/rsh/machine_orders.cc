@@ -33,7 +33,7 @@ Result<Waiting> toggle(const Ordered &o, const On &on, const Off &off) {
     return ask(o, *isOn ? messages::Command(on) : messages::Command(off));
 }
 
-/// Posts the command of `make` for one spindle, or for all with -1.
+/// Posts the command from `make` for one spindle, or for all with -1.
 template <class Make>
 Result<Waiting> for_spindles(const Ordered &o, int spindle, const Make &make) {
     Waiting waiting;
@@ -50,7 +50,7 @@ Result<Waiting> for_spindles(const Ordered &o, int spindle, const Make &make) {
     return waiting;
 }
 
-/// The number at a place; without it `preset`.
+/// The number at an index; `preset` if it is missing.
 Result<int> spindle_at(const Ordered &o, std::size_t place, int preset) {
     return o.words.size() > place ? index_of(o.words[place], "spindle", o.settings.num_spindles)
                                   : Result<int>(preset);
@@ -144,7 +144,7 @@ Result<Waiting> run(const Ordered &o) {
 }
 
 Result<Waiting> pause(const Ordered &o) {
-    // Clients also pause when nothing runs, which is no error.
+    // Clients also send a pause when nothing runs; this is not an error.
     return o.status().task.interp_state == messages::InterpState::IDLE ? Waiting{}
                                                                        : ask(o, messages::PauseProgram{});
 }
@@ -155,7 +155,8 @@ Result<Waiting> resume(const Ordered &o) {
 
 Result<Waiting> step(const Ordered &o) {
     if (isWrongMode(o, messages::Mode::AUTO, messages::DECLARATION<messages::StepProgram>)) {
-        return o.settings.isOld() ? Result<Waiting>(Waiting{}) : fail("");  // 2.9: it was received
+        // LinuxCNC 2.9 only reports that the order was received
+        return o.settings.isOld() ? Result<Waiting>(Waiting{}) : fail("");
     }
     return ask(o, messages::StepProgram{}, Until::TAKEN);
 }
@@ -183,7 +184,7 @@ Result<Waiting> set_lube(const Ordered &o) {
 Result<Waiting> set_spindle(const Ordered &o) {
     enum class Turn : std::uint8_t { FORWARD, REVERSE, INCREASE, DECREASE, CONSTANT, OFF };
     const bool is_off = isSameWord(word(o, 0), "OFF");
-    // Without a number one spindle is turned, but all are stopped.
+    // Without a number one spindle is started, but all are stopped.
     const auto spindle = spindle_at(o, 1, is_off ? -1 : 0);
     if (!spindle.has_value()) {
         return std::unexpected(spindle.error());
@@ -197,7 +198,7 @@ Result<Waiting> set_spindle(const Ordered &o) {
     if (!turn.has_value()) {
         return std::unexpected(turn.error());
     }
-    constexpr std::size_t S = 2;  // place in the settings
+    constexpr std::size_t S = 2;  // index in the settings
     const double programmed = o.status().codes.settings[S];
     const double speed = programmed > 0 ? programmed : PRESET_SPEED;
     return for_spindles(o, *spindle, [&](int i) -> messages::Command {
@@ -243,7 +244,7 @@ Result<Waiting> set_spindle_override(const Ordered &o) {
 }
 
 Result<Waiting> load_tool_table(const Ordered &o) {
-    // The machine has one table, which its INI file names.
+    // The machine has only the table that its INI file names.
     const ini::IniEntry *const entry =
         o.settings.ini == nullptr ? nullptr : o.settings.ini->find("EMCIO", "TOOL_TABLE");
     const std::filesystem::path own(entry == nullptr ? "" : entry->value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Orders about states, programs, spindles, coolant and tools.
+// Orders for states, programs, spindles, coolant and tools.
 #pragma once
 
 #include "clients/rsh/orders.hh"
@@ -28,11 +28,11 @@ Result<Waiting> set_spindle_override(const Ordered &o);
 Result<Waiting> load_tool_table(const Ordered &o);
 Result<Waiting> set_tool_offset(const Ordered &o);
 
-/// Asks the machine; the answer waits for it.
+/// Posts the command; the answer waits for it.
 Result<Waiting> ask(const Ordered &o, const messages::Command &command, Until until = Until::AS_SET);
-/// The answer to an order in a mode that does not permit it.
+/// Reports that the current mode does not permit the order.
 void tell_wrong_mode(const Ordered &o, const messages::Declaration &what);
-/// The word at a place, or none.
+/// The word at an index, or an empty text.
 std::string word(const Ordered &o, std::size_t place);
 
 }  // namespace mw::rsh

@@ -12,7 +12,7 @@
 namespace mw::rsh {
 namespace {
 
-/// Until a joint that was asked to home has begun.
+/// Maximum time until a requested homing begins.
 constexpr double PATIENCE_S = 2;
 
 Result<int> joint_at(const Ordered &o, std::size_t place) {
@@ -28,7 +28,7 @@ Result<JogTarget> target_of(const Ordered &o) {
                          : fail(fmt::format("Invalid axis '{}', teleop mode has letters", printable(name)));
     }
     const auto joint = parse_int(name);
-    // A joint that the machine does not have: 2.9 lets the machine report it.
+    // If the machine does not have the joint, LinuxCNC 2.9 lets the machine report it.
     const int count = o.settings.isOld() ? MAX_JOINTS : o.settings.num_joints;
     if (!joint.has_value() || *joint < 0 || *joint >= count) {
         return fail(fmt::format("Invalid joint '{}', valid range [0,{}]", printable(name),
@@ -37,7 +37,8 @@ Result<JogTarget> target_of(const Ordered &o) {
     return JogTarget{true, static_cast<int>(*joint)};
 }
 
-/// Clients are used to an answer of consent; a message to the operator says that nothing moves.
+/// True if jogging is not possible now. Clients expect a positive answer, so a message to the operator
+/// reports that nothing moves.
 bool isNoTimeToJog(const Ordered &o) {
     const messages::TaskStatus &task = o.status().task;
     if (task.mode == messages::Mode::MANUAL || task.isAway) {
@@ -70,7 +71,7 @@ Result<Waiting> wait_homed(const Ordered &o) {
                       patience = static_cast<std::uint64_t>(PATIENCE_S / o.settings.task_period_s),
                       settled = std::uint64_t{0}, idle = std::uint64_t{0}](
                          const messages::MachineStatus &status) mutable -> Result<bool> {
-        // Motion follows the last joint's homing by its mode.
+        // Cycles after the homing of the last joint until motion has changed its mode.
         constexpr std::uint64_t CYCLES_TO_FOLLOW = 2;
         bool isHomed = true, isHoming = false;
         for (int i = 0; i < count; ++i) {
@@ -141,7 +142,7 @@ Result<Waiting> set_teleop(const Ordered &o) {
     if (!isOn.has_value()) {
         return std::unexpected(isOn.error());
     }
-    // Outside manual mode nothing is in teleop mode.
+    // Teleop mode exists only in manual mode.
     if (!*isOn && o.status().task.mode != messages::Mode::MANUAL) {
         return Waiting{};
     }

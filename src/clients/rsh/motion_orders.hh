@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Orders about joints, axes and the probe.
+// Orders for joints, axes and the probe.
 #pragma once
 
 #include "clients/rsh/orders.hh"

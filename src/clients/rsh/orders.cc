@@ -22,7 +22,7 @@ Result<Waiting> done() {
     return Waiting{};
 }
 
-/// A switch of the connection: ON or OFF.
+/// Sets a switch of the connection: ON or OFF.
 template <bool OwnState::*SETTING>
 Result<Waiting> switch_own(const Ordered &o) {
     const auto isOn = o.words.empty() ? on_or_off("") : on_or_off(o.words[0]);
@@ -138,7 +138,7 @@ Result<Waiting> set_comm_mode(const Ordered &o) {
     return choose<bool>(o, is_text, {{"ASCII", true}});
 }
 
-/// So many cycles of task.
+/// Waits for this number of task cycles.
 Result<Waiting> wait_heartbeat(const Ordered &o) {
     constexpr double LONGEST_S = 1;
     const auto periods = number(o.words.empty() ? "1" : o.words[0], "periods");
@@ -163,7 +163,7 @@ Result<Waiting> wait_heartbeat(const Ordered &o) {
 
 constexpr SpokenBy BOTH = SpokenBy::BOTH, NEWER = SpokenBy::NEWER, OLD = SpokenBy::OLD;
 
-/// In the order of the alphabet, as HELP lists them. Stops need no machine that is on.
+/// In alphabetical order, as HELP lists them. Stops are possible while the machine is off.
 constexpr Row ROWS[] = {
     {BOTH, {"ABORT", Needs::ENABLE, "", abort_all}},
     {BOTH,

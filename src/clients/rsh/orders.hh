@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// SET: a table of orders, each with what it asks of the machine or of the connection.
+// SET: a table of orders for the machine or the connection.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@
 
 namespace mw::rsh {
 
-/// State of a connection that an order needs.
+/// Required state of the connection for an order.
 enum class Needs : std::uint8_t { NOTHING, HELLO, ENABLE, MACHINE_ON };
 
-/// When an order is answered.
+/// Condition for answering an order.
 enum class Until : std::uint8_t {
-    AS_SET,    ///< as WAIT_MODE says
-    TAKEN,     ///< when the machine has taken it: what it starts may take long
+    AS_SET,    ///< as set by WAIT_MODE
+    TAKEN,     ///< when the machine has taken it; the action that it starts may take long
     ENDED,     ///< when it has ended
     WHATEVER,  ///< when it has ended or is rejected
     WHATEVER_TAKEN
 };
 
-/// What the answer waits for; nothing: it is done.
+/// Condition for an answer; nothing: it is complete.
 struct Waiting {
     Until until = Until::AS_SET;
     std::vector<client::Serial> serials;
-    /// Besides; an error ends the wait.
+    /// Additional condition; an error ends the wait.
     std::function<Result<bool>(const messages::MachineStatus &)> isOver;
-    /// A probe that meets nothing has done what it was asked.
+    /// A probe without contact is not an error.
     bool isProbe = false;
 };
 
@@ -42,9 +42,9 @@ struct Ordered {
     SharedView &shared;
     OwnState &own;
     Commander &commander;
-    std::deque<std::string> &errors;  ///< of this connection alone, as GET ERROR tells them
-    const Words &words;               ///< behind the name of the order
-    const std::string &rest;          ///< the same as it was written
+    std::deque<std::string> &errors;  ///< errors of this connection, for GET ERROR
+    const Words &words;               ///< words after the name of the order
+    const std::string &rest;          ///< the words as written
     const messages::MachineStatus &status() const { return shared.status(); }
 };
 
@@ -53,11 +53,11 @@ using Ordering = Result<Waiting> (*)(const Ordered &);
 struct Order {
     const char *name;
     Needs needs;
-    const char *usage;  ///< its words, for HELP
+    const char *usage;  ///< usage for HELP
     Ordering ordering;
 };
 
-/// `name` in capitals. Null: there is no such order.
+/// `name` in capitals. Null if there is no such order.
 const Order *find_order(const Settings &settings, const std::string &name);
 /// "NAME WORDS" of each, for HELP.
 std::vector<std::string> order_usages(const Settings &settings);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a connection has set for itself.
+// Settings of one connection.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,24 @@
 
 namespace mw::rsh {
 
-/// Unit of lengths in answers. AUTO: that of the program.
+/// Unit of lengths in answers. AUTO: the unit of the program.
 enum class LengthUnit : std::uint8_t { AUTO, INCH, MM, CM, CUSTOM };
 enum class AngleUnit : std::uint8_t { AUTO, DEG, RAD, GRAD, CUSTOM };
 
 struct OwnState {
-    bool greeted = false;    ///< HELLO with the right password
+    bool greeted = false;    ///< HELLO was sent with the correct password
     bool isEnabled = false;  ///< may command the machine
     bool isEchoing = true;
     bool isVerbose = false;
     bool isTimed = false;          ///< each line of an answer begins with the time
-    bool waiting_for_done = true;  ///< an answer to SET comes when the command has ended
+    bool waiting_for_done = true;  ///< an answer to SET waits for the end of the command
     bool updating = true;          ///< GET reports the newest status
-    double timeout_s = 0;          ///< of SET; 0: none
+    double timeout_s = 0;          ///< timeout of SET; 0: none
     LengthUnit length_unit = LengthUnit::AUTO;
     AngleUnit angle_unit = AngleUnit::AUTO;
     std::string protocol = "1.1";
     ReadUpTo lines{};
-    std::unique_ptr<messages::MachineStatus> kept;  ///< status of GET while it is not updated
+    std::unique_ptr<messages::MachineStatus> kept;  ///< status for GET while it is not updated
 };
 
 }  // namespace mw::rsh

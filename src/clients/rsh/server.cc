@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The only file that includes Boost.Asio.
+// Implemented with Boost.Asio, which only this file includes.
 #include "clients/rsh/server.hh"
 
 #include <fcntl.h>
@@ -26,9 +26,9 @@ namespace net = boost::asio;
 using boost::system::error_code;
 using net::ip::tcp;
 
-/// Interval of conversations that wait for the machine.
+/// Interval for conversations that wait for the machine.
 constexpr double BUSY_S = 0.001;
-/// For answers that are on their way when the server ends.
+/// Time for pending answers when the server ends.
 constexpr std::chrono::milliseconds LAST_WORDS{500};
 constexpr std::chrono::milliseconds REST{100};
 
@@ -36,8 +36,8 @@ double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Answers are sent at once; a peer that is gone without a word is found out within some 15 s; and no program
-/// that is started from here keeps the connection open.
+/// Sends answers at once, detects a peer that has disappeared within about 15 s, and prevents that child
+/// processes keep the connection open.
 void prepare_socket(tcp::socket &socket) {
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
@@ -50,16 +50,16 @@ void prepare_socket(tcp::socket &socket) {
     ::fcntl(fd, F_SETFD, FD_CLOEXEC);
 }
 
-/// A connection. Asio's handlers hold it, so that it outlives what is under way.
+/// A connection. Asio's handlers hold it, so that it outlives pending operations.
 class Connection : public std::enable_shared_from_this<Connection> {
   public:
     Connection(tcp::socket socket, std::unique_ptr<Conversation> conversation)
         : socket_(std::move(socket)), conversation_(std::move(conversation)) {}
 
     Conversation &conversation() { return *conversation_; }
-    /// Nothing more comes of it.
+    /// True if the connection has ended.
     bool isGone() const { return isGone_; }
-    /// It has asked for the end of the server, also when nothing more comes of it.
+    /// True if it has requested the end of the server, also after the connection has ended.
     bool wantsShutdown() const { return wantsShutdown_; }
 
     void step(double now) {
@@ -73,7 +73,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }
     void end() {
         isGone_ = true;
-        conversation_.reset();  // what it jogs stops now
+        conversation_.reset();  // its jogs stop now
         error_code ignored;
         socket_.shutdown(tcp::socket::shutdown_both, ignored);
         socket_.close(ignored);
@@ -147,7 +147,7 @@ class Server::Impl {
         }
         auto opened = open_at("127.0.0.1");
         if (opened.has_value() && !settings_.isIpv4Only) {
-            // A computer without IPv6 does without.
+            // A computer may have no IPv6.
             static_cast<void>(open_at("::1"));
         }
         return opened;
@@ -221,7 +221,7 @@ class Server::Impl {
                 accept(acceptor);
                 return;
             }
-            // This process has no descriptor left, or no memory: not again at once.
+            // No free descriptor or memory, so accepting waits.
             pause_.expires_after(REST);
             pause_.async_wait([this, &acceptor](error_code) { accept(acceptor); });
         });
@@ -247,7 +247,7 @@ class Server::Impl {
     Making making_;
     int port_ = 0;
     net::io_context loop_{1};
-    net::steady_timer pause_{loop_};  ///< where nothing can be accepted
+    net::steady_timer pause_{loop_};  ///< runs while no connection can be accepted
     std::list<tcp::acceptor> acceptors_;
     std::list<Held> connections_;
 };

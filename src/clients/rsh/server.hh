@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A port of TCP at which conversations are had.
+// A TCP port for conversations.
 #pragma once
 
 #include <functional>
@@ -12,26 +12,26 @@
 namespace mw::rsh {
 
 struct ServerSettings {
-    int port = 5007;          ///< 0: a free one
-    std::string address;      ///< empty: this computer alone, by IPv4 and, where there is it, by IPv6
-    bool isIpv4Only = false;  ///< of this computer alone
-    int max_sessions = -1;    ///< -1: as many as come
+    int port = 5007;          ///< 0: any free port
+    std::string address;      ///< empty: only this computer, by IPv4 and, if available, IPv6
+    bool isIpv4Only = false;  ///< only for this computer
+    int max_sessions = -1;    ///< -1: unlimited
 };
 
-/// One thread. The kernel's probes end connections of clients that have gone.
+/// One thread. TCP keep-alive ends connections of clients that have disappeared.
 class Server {
   public:
-    class Impl;  ///< of server.cc alone
+    class Impl;  ///< defined in server.cc
     using Making = std::function<std::unique_ptr<Conversation>()>;
 
-    /// An error when the port cannot be had.
+    /// An error if the port is not available.
     static Result<std::unique_ptr<Server>> listen(const ServerSettings &settings, Making making);
     ~Server();
 
     int port() const;
     /// Processes all input. `prepare` is called before conversations continue, so that they see the newest
-    /// status; false ends it, as a conversation can. Sleeps until a byte comes, or for `idle_s`; shortly
-    /// while a conversation is busy.
+    /// status. The loop ends when it returns false, or on request of a conversation. Sleeps until data arrive
+    /// or for `idle_s`; only briefly while a conversation is busy.
     void run(const std::function<bool()> &prepare, double idle_s);
 
   private:

@@ -124,7 +124,7 @@ void Session::get(const Words &words) {
                                                : answering({settings_, shared_, own_, status, behind});
     const bool only_order = answering == nullptr && find_order(settings_, name) != nullptr;
     if (only_order && !settings_.isOld()) {
-        return;  // scripts ask so for what can only be set, and expect no line
+        return;  // scripts use GET for settings without a value, and expect no line
     }
     if (!answer.has_value()) {
         tell_error(answer.error().str());
@@ -234,7 +234,7 @@ void Session::look_at_wait(double now_s) {
     if (!end.has_value() && !late) {
         return;
     }
-    // The status shows the change of an order when it is answered.
+    // Cycles until the status shows the change of an order.
     constexpr std::uint64_t CYCLES_TO_SHOW = 3;
     const bool is_shown = !end.has_value() || wait_->what.serials.empty() || !own_.waiting_for_done;
     if (!is_shown && wait_->shown_cycle == 0) {

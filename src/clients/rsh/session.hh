@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A connection of linuxcncrsh: lines in, lines out, one after another.
+// A connection of linuxcncrsh, which reads and answers one line after the other.
 #pragma once
 
 #include <deque>
@@ -16,11 +16,11 @@
 
 namespace mw::rsh {
 
-/// One thread. A line is read when the one before it has been answered. Jogs of a connection stop when it
+/// One thread. A line is read after the previous line has been answered. Jogs of a connection stop when it
 /// ends.
 class Session final : public Conversation {
   public:
-    /// All must outlive it.
+    /// The arguments must outlive the session.
     Session(const Settings &settings, SharedView &shared, Joining joining);
     ~Session() override;
     Session(const Session &) = delete;
@@ -31,20 +31,20 @@ class Session final : public Conversation {
     bool isFull() const override { return input_.waiting() > MAX_WAITING; }
     void step(double now_s) override;
     std::string &output() override { return output_; }
-    /// It waits for the machine or jogs it.
+    /// True while it waits for the machine or jogs it.
     bool isBusy() const override { return wait_.has_value() || commander_.isJogging(); }
     bool isOver() const override { return isOver_; }
     bool wantsShutdown() const override { return wantsShutdown_; }
 
   private:
-    /// Bytes that wait in here, and answers that are not read, before others are taken.
+    /// Maximum size of waiting input, and of unread answers, before no more input is accepted.
     static constexpr std::size_t MAX_WAITING = 65536;
 
     struct Wait {
         std::string order;
         Waiting what;
-        double end_s = 0;               ///< 0: for ever
-        std::uint64_t shown_cycle = 0;  ///< of task, in which the status shows what has ended; 0: it has not
+        double end_s = 0;               ///< 0: no limit
+        std::uint64_t shown_cycle = 0;  ///< task cycle after which the status shows the end; 0: not ended
     };
 
     std::optional<std::string> next_line();
@@ -55,7 +55,7 @@ class Session final : public Conversation {
     void shut_down();
     std::optional<std::string> lacks(const Order &order) const;
     void look_at_wait(double now_s);
-    /// Nothing: not yet; else an error, empty where the machine has told it.
+    /// Nothing before the end; else an error, empty if the machine has reported it.
     std::optional<Result<>> end_of(const Waiting &waiting);
     bool isProbeWithoutContact(const client::Outcome &outcome) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the command line and the INI file settle for all connections.
+// Settings of the command line and the INI file, for all connections.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace mw::rsh {
 
-/// NEWER: that of LinuxCNC 2.10, the default of a server. OLD: that of 2.9.
+/// NEWER: LinuxCNC 2.10, the default of a server. OLD: LinuxCNC 2.9.
 enum class Dialect { NEWER, OLD };
 
 struct Settings {
-    std::string name = "EMCNETSVR";        ///< as HELLO answers
-    std::string connect_password = "EMC";  ///< of HELLO
+    std::string name = "EMCNETSVR";        ///< name in the answer to HELLO
+    std::string connect_password = "EMC";  ///< password for HELLO
     std::string enable_password = "EMCTOO";
-    std::string program_folder;  ///< of programs whose name is no path; empty: that of the INI file
+    std::string program_folder;  ///< for programs whose name is not a path; empty: the folder of the INI file
     Dialect dialect = Dialect::NEWER;
-    const ini::IniFile *ini = nullptr;  ///< of the machine; must outlive this
+    const ini::IniFile *ini = nullptr;  ///< of the machine; must outlive this object
     double task_period_s = 0.001;
     int num_joints = 3;
     int num_spindles = 1;

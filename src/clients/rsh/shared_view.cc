@@ -14,7 +14,7 @@ std::size_t place_of(messages::MessageKind kind) {
 
 Result<> SharedView::read() {
     auto read = viewer_.read_status();
-    // Read for other clients, too: a line counts as read when a connection requests it.
+    // Messages are read for other clients, too, so a line counts as read only when a connection requests it.
     while (auto message = viewer_.next_message(client::Viewer::Reading::LOOKS_ON)) {
         lines_.push_back({++newest_, message->kind, std::move(message->text)});
         if (lines_.size() > MAX_LINES) {

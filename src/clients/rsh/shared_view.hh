@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What all connections see of the machine: its status, and lines for the operator that each of them gets.
+// The data that all connections see of the machine: its status, and lines for the operator that each
+// connection receives.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace mw::rsh {
 
-/// Where a connection is in the lines, for each kind.
+/// Position of a connection in the lines, for each type.
 using ReadUpTo = std::array<std::uint64_t, 3>;
 
 /// One thread.
@@ -20,22 +21,22 @@ class SharedView {
   public:
     explicit SharedView(client::Viewer viewer) : viewer_(std::move(viewer)) {}
 
-    /// Brings status and lines up to date.
+    /// Updates status and lines.
     Result<> read();
     const messages::MachineStatus &status() const { return viewer_.status(); }
     bool isMachineAlive() const { return viewer_.isMachineAlive(); }
     Result<> check_machine() const { return viewer_.check_machine(); }
 
-    /// For a connection that begins: what no connection has read yet.
+    /// Initial position of a connection: lines that no connection has read.
     ReadUpTo unread() const { return read_up_to_; }
-    /// The next line of a kind; nothing when there is none.
+    /// The next line of a type; nothing if there is none.
     std::optional<std::string> next_line(messages::MessageKind kind, ReadUpTo &own);
 
-    /// Number of connections; their maker counts them.
+    /// Number of connections; their owner counts them.
     int num_sessions = 0;
 
   private:
-    /// Lines that are kept for connections: more than anybody reads at once.
+    /// Maximum number of lines stored for connections, above the number read at once.
     static constexpr std::size_t MAX_LINES = 500;
     struct Line {
         std::uint64_t number = 0;

@@ -8,12 +8,12 @@
 
 namespace mw::rsh {
 
-/// Of the program: G20 or G21.
+/// Unit of the program: G20 or G21.
 LengthUnit program_unit(const messages::MachineStatus &status);
-/// What AUTO means now.
+/// The current meaning of AUTO.
 LengthUnit shown_unit(const OwnState &own, const messages::MachineStatus &status);
-/// Factor of machine lengths, and angles, in answers: 1 with AUTO, so that a program's G20 does not change
-/// them.
+/// Factor of machine lengths, and of angles, in answers. 1 with AUTO, so that a program's G20 does not change
+/// the answers.
 double length_factor(LengthUnit unit, const messages::MachineStatus &status);
 double angle_factor(AngleUnit unit, const messages::MachineStatus &status);
 

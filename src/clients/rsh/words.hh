@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Words of a line, and what they mean.
+// Splits a line into words and parses them.
 #pragma once
 
 #include <initializer_list>
@@ -14,16 +14,16 @@ namespace mw::rsh {
 
 using Words = std::vector<std::string>;
 
-/// ON or OFF; also 1 and 0.
+/// Parses ON or OFF; also 1 and 0.
 Result<bool> on_or_off(const std::string &word);
 /// A finite number; `what` names it in the error.
 Result<double> number(const std::string &word, const char *what);
-/// From -1, for all, to `count` - 1; `what` names it in the error.
+/// -1 for all, or 0 to `count` - 1; `what` names it in the error.
 Result<int> index_of(const std::string &word, const char *what, int count);
 /// The letter of an axis, or its number.
 Result<int> axis_of(const std::string &word);
 
-/// The value that a word names, in either case.
+/// The value of a word, in upper or lower case.
 template <class Value>
 Result<Value> one_of(const std::string &word,
                      std::initializer_list<std::pair<std::string_view, Value>> names);
@@ -32,7 +32,7 @@ std::unexpected<Error> no_such_value(const std::string &word, const std::string 
 bool isSameWord(std::string_view word, std::string_view name);
 /// Takes the same time for each wrong password.
 bool isSamePassword(std::string_view given, std::string_view wanted);
-/// What is left of `line` behind its first `count` words.
+/// The part of `line` after its first `count` words.
 std::string behind_words(std::string_view line, int count);
 
 template <class Value>

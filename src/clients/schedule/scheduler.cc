@@ -171,7 +171,7 @@ void Scheduler::look_at_work() {
         } else if (mode_ != QueueMode::PAUSE) {
             post_next();
         } else {
-            return;  // nothing further is begun in a pause
+            return;  // no command is sent during a pause
         }
     }
 }

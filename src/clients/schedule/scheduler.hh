@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs the programs of a queue one after another, as a client of the machine.
+// Runs the programs of a queue one after the other, as a client of the machine.
 #pragma once
 
 #include <deque>
@@ -13,37 +13,38 @@ namespace mw::schedule {
 
 enum class QueueMode { STOP, RUN, PAUSE, ERROR };
 
-/// One thread. A program leaves the queue once it has ended well. One that fails or is aborted stays, and
-/// the queue stays in ERROR until it is stopped or run again: no program follows one that failed.
+/// One thread. A program is removed from the queue after it has ended without error. If it fails or is
+/// aborted it remains, and the queue is in ERROR until it is stopped or run again. So no program follows a
+/// failed one.
 class Scheduler {
   public:
-    /// `folder`: of programs whose name is no path.
+    /// `folder` is for programs whose name is not a path.
     Scheduler(rsh::Joining joining, std::string folder)
         : commander_(std::move(joining)), folder_(std::move(folder)) {}
 
     Queue &queue() { return queue_; }
     const Queue &queue() const { return queue_; }
     QueueMode mode() const { return mode_; }
-    /// Why it is in ERROR.
+    /// The reason of the state ERROR.
     const std::string &error() const { return error_; }
 
-    /// Begins with the first program; a machine that is not ready for one is an error. Goes back to STOP when
-    /// no program is left.
+    /// Starts with the first program; an error if the machine is not ready for a program. Returns to STOP
+    /// when no program is left.
     Result<> run(const messages::MachineStatus &status);
-    /// Holds the program that runs; without one, none is begun.
+    /// Pauses the running program; if none runs, none is started.
     Result<> pause();
     Result<> resume();
-    /// Aborts the program that runs. It stays in the queue.
+    /// Aborts the running program, which remains in the queue.
     Result<> stop();
     /// Rejected for the running program.
     Result<> remove(int tag);
 
-    /// Looks for what has ended, and at most every `poll_s` for the next program.
+    /// Checks for the end of commands, and at most every `poll_s` starts the next program.
     void step(const messages::MachineStatus &status, double now_s);
     double poll_s = 1.0;
 
   private:
-    /// What is still to be done for the program in front, one after another.
+    /// Remaining work for the first program, in order.
     struct Work {
         int tag = 0;
         std::deque<messages::Command> ahead;
@@ -64,7 +65,7 @@ class Scheduler {
     double looked_s_ = -1e9;
 };
 
-/// What is asked of the machine for a program, in order; its last command runs it.
+/// Commands to the machine for a program, in order; the last command runs it.
 std::deque<messages::Command> commands_for(const Job &job, const std::string &folder,
                                            const messages::MachineStatus &status);
 

@@ -10,7 +10,7 @@ namespace mw::schedule {
 namespace {
 
 constexpr const char *PROTOCOL = "1.1";
-/// Ends of lines as LinuxCNC's has them.
+/// Line ends as in LinuxCNC.
 constexpr const char *AFTER_SET = "\n\r", *AFTER_REFUSED_GET = "\r\n\r\n";
 
 }  // namespace

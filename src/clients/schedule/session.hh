@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A connection of schedrmt: lines in, lines out, one after another. Its answers are those of LinuxCNC 2.9's.
+// A connection of schedrmt, which reads and answers one line after the other. Its answers are those of
+// LinuxCNC 2.9.
 #pragma once
 
 #include <string>
@@ -14,23 +15,24 @@
 
 namespace mw::schedule {
 
-/// What a connection has set for itself.
+/// Settings of one connection.
 struct OwnState {
-    bool greeted = false;    ///< HELLO with the right password
+    bool greeted = false;    ///< HELLO was sent with the correct password
     bool isEnabled = false;  ///< may command the queue
     bool isEchoing = true;
     bool isVerbose = false;
     std::string protocol = "1.1";
 };
 
-/// What all connections share; everything must outlive them.
+/// Objects shared by all connections; all must outlive the connections.
 struct Shared {
     const rsh::Settings &settings;
     rsh::SharedView &view;
     Scheduler &scheduler;
 };
 
-/// One thread. What a connection has started continues when it ends: the queue is the server's.
+/// One thread. Programs that a connection has started continue when it ends, because the queue belongs to the
+/// server.
 class Session final : public rsh::Conversation {
   public:
     explicit Session(const Shared &shared) : shared_(shared) {}
@@ -45,7 +47,7 @@ class Session final : public rsh::Conversation {
     bool wantsShutdown() const override { return wantsShutdown_; }
 
   private:
-    /// Bytes that wait in here, and answers that are not read, before others are taken.
+    /// Maximum size of waiting input, and of unread answers, before no more input is accepted.
     static constexpr std::size_t MAX_WAITING = 65536;
 
     void carry_out(const std::string &line);

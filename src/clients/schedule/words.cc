@@ -27,7 +27,7 @@ Queue &queue_of(const Said &said) {
     return said.shared.scheduler.queue();
 }
 
-/// The program that a tag names, by the word at `place`.
+/// The program with the tag in the word at `place`.
 Result<Job> job_by_tag(const Said &said, std::size_t place) {
     const auto tag = whole(said, place, "tag");
     if (!tag.has_value()) {

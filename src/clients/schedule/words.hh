@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What can be asked of a queue of programs and what can be set: a row for each.
+// Questions and orders for a queue of programs: one row for each.
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@ namespace mw::schedule {
 struct Said {
     const Shared &shared;
     OwnState &own;
-    rsh::Words words;  ///< behind the name
+    rsh::Words words;  ///< words after the name
 };
 
-/// The lines that answer GET NAME; `name` in capitals.
+/// The answer to GET NAME; `name` in capitals.
 Result<std::vector<std::string>> answer_to(const std::string &name, const Said &said);
-/// SET NAME; the connection is greeted. Orders that need SET ENABLE are rejected without it.
+/// SET NAME, after HELLO. Orders that need SET ENABLE are rejected without it.
 Result<> carry_out_order(const std::string &name, const Said &said);
 /// HELP; `about` in capitals, empty: everything.
 std::vector<std::string> help(const std::string &about);

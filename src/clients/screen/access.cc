@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::pair<Role, std::string_view>, 3> NAMES{
     {{Role::VIEW, "view"}, {Role::OPERATE, "operate"}, {Role::CONFIGURE, "configure"}}};
 
-/// Shorter ones could be guessed.
+/// Shorter secrets could be guessed.
 constexpr std::size_t SHORTEST_SECRET = 32;
 
 Result<Tokens> make(const std::string &path) {
@@ -35,7 +35,7 @@ Result<Tokens> make(const std::string &path) {
     return written.has_value() ? made : std::unexpected(written.error());
 }
 
-/// The value of a cookie, empty where there is none of this name.
+/// The value of a cookie; empty if there is no cookie of this name.
 std::string_view cookie_value(std::string_view header, std::string_view name) {
     while (!header.empty()) {
         const std::size_t end = std::min(header.find(';'), header.size());
@@ -154,7 +154,7 @@ Role Access::role_of_token(const Credentials &shown, int port) const {
 Response Access::login(const Request &request, int port, std::int64_t now_ns) {
     const auto answer = [this](Role role) {
         Response response;
-        const std::string_view name = role == Role::STATUS ? "" : role_name(role);  // a token would help
+        const std::string_view name = role == Role::STATUS ? "" : role_name(role);  // a token would permit it
         response.body =
             fmt::format(R"({{"role":"{}","protection":"{}"}})", name, protection_name(protection_));
         return response;

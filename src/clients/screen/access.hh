@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The rights of a client, by its connection and its token: the table of docs/reference/api.md.
+// The rights of a client, from its connection and its token: the table of docs/reference/api.md.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,13 @@ namespace mw::screen {
 
 /// "local", "tls", "none".
 std::string_view protection_name(Protection protection);
-/// "view", "operate", "configure"; "" without a role, "view" for STATUS, which is the same for screens.
+/// "view", "operate", "configure". "" without a role; "view" also for STATUS, because screens treat both the
+/// same.
 std::string_view role_name(Role role);
 std::optional<Role> role_of_name(std::string_view name);
 
-/// Secrets of 256 bits and what they open. A process that can read the file can operate the machine of this
-/// computer anyway, so the file keeps them unencrypted.
+/// Secrets of 256 bits with their roles. A process that can read the file can operate the machine of this
+/// computer anyway, so the secrets are not encrypted.
 class Tokens {
   public:
     struct Token {
@@ -31,15 +32,15 @@ class Tokens {
 
     Tokens() = default;
     explicit Tokens(std::vector<Token> all) : all_(std::move(all)) {}
-    /// Reads lines of "ROLE SECRET"; makes the file with one secret for each role where it is missing. An
-    /// error when another user could read it.
+    /// Reads lines of "ROLE SECRET". If the file is missing, creates it with one secret for each role. An
+    /// error if another user could read it.
     static Result<Tokens> read_or_make(const std::string &path);
     /// A new secret for each role.
     static Result<Tokens> random();
 
-    /// Takes as long for each wrong one.
+    /// Takes the same time for each wrong secret.
     Role role_of(std::string_view secret) const;
-    /// A secret that opens `role`; empty where there is none.
+    /// A secret with this role; empty if there is none.
     std::string_view secret_of(Role role) const;
     const std::vector<Token> &all() const { return all_; }
 
@@ -51,29 +52,30 @@ class Tokens {
 struct Credentials {
     std::string_view authorization;  ///< header: "Bearer SECRET"
     std::string_view cookie;         ///< header
-    /// The connection was opened on this computer by the user of the server, or root.
+    /// The user of the server, or root, has opened the connection on this computer.
     bool isOfServerUser = false;
 };
 
-/// Of one way in.
+/// Access rules of one port.
 class Access {
   public:
     /// All requests have this role.
     Access(Protection protection, Role everybody) : protection_(protection), everybody_(everybody) {}
-    /// With TLS: who shows a token has its role.
+    /// With TLS: a request has the role of its token.
     explicit Access(Tokens tokens)
         : protection_(Protection::TLS), tokens_(std::move(tokens)), cookies_(tokens_) {}
-    /// Of this computer: CONFIGURE for the user of the server and root, the role of a token for another user
-    /// that shows one, STATUS for all others. Browsers get one of `cookies`, which end with the server: any
-    /// user of this computer may listen on its port later, and a browser would send them there.
+    /// For this computer: CONFIGURE for the user of the server and root, the role of the token for another
+    /// user with a token, STATUS for all others. Browsers receive one of `cookies`, which end with the
+    /// server, because any user of this computer may later listen on its port and would receive the browser's
+    /// cookies.
     static Access of_this_computer(Tokens tokens, Tokens cookies);
 
     Protection protection() const { return protection_; }
-    /// No role without a token or with a wrong one. `port`: of the server; keeps the cookies of servers
-    /// on one computer apart.
+    /// No role without a token or with a wrong one. `port` is that of the server; it separates the cookies of
+    /// servers on one computer.
     Role role_of(const Credentials &shown, int port) const;
-    /// GET: the role of the request. POST {"token": "..."}: a cookie that no script can read, for the
-    /// browser; 403 for a wrong one, 429 when there were too many wrong ones. DELETE: forgets the cookie.
+    /// GET: the role of the request. POST {"token": "..."}: a cookie that scripts cannot read, for the
+    /// browser; 403 for a wrong token, 429 after too many wrong tokens. DELETE: removes the cookie.
     Response login(const Request &request, int port, std::int64_t now_ns);
 
   private:

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view API = "/api/", FILES = "/api/files/", HAL = "/api/hal/", SCOPE = "/api/scope",
                            INPUTS = "/api/inputs";
 
-/// Facts that a screen needs to show the status of the machine.
+/// Data that a screen needs to show the status of the machine.
 constexpr std::array<std::string_view, 4> OF_STATUS{"/api/icon", "/api/machine", "/api/schema", "/api/tools"};
 
 Response not_allowed(Role needed) {
@@ -63,7 +63,7 @@ Api::Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock)
     }
 }
 
-/// The first line that cannot be written is reported, and no further line is tried.
+/// Reports the first line that cannot be written, and then stops writing.
 void Api::write_log(const std::string &line, std::int64_t age_ns) {
     const auto failed = std::make_shared<std::string>();
     threads_.disk.run(
@@ -88,8 +88,7 @@ Role Api::needed_role(const Request &request) const {
     if (!is_hal && !request.path.starts_with(SCOPE)) {
         return Role::OPERATE;
     }
-    // A value of HAL can move anything, in any state of the machine; values of a panel are for
-    // operators.
+    // A HAL value can move anything, in any state of the machine; values of a panel are for operators.
     const bool of_panel =
         is_hal && std::ranges::find(operable_, request.path.substr(HAL.size())) != operable_.end();
     return of_panel ? Role::OPERATE : Role::CONFIGURE;
@@ -126,7 +125,7 @@ void Api::tick() {
 
 void Api::closed(SessionId session) {
     screens_.closed(session);
-    if (screens_.count() == 0) {  // no screen shows the oscilloscope: it leaves the servo thread
+    if (screens_.count() == 0) {  // no screen shows the oscilloscope, so it is removed from the servo thread
         threads_.hal.run([this] { return hal_.scope("DELETE", ""); }, [](const Response &) {});
     }
 }
@@ -248,7 +247,7 @@ void Api::answer_files(const Request &request, const std::string &name, Reply re
 
 namespace {
 
-/// Extensions of files that filters read as data. A filter may run any other file: [FILTER] py = python3.
+/// Extensions of files that filters read as data. A filter may execute other files: [FILTER] py = python3.
 constexpr std::array<std::string_view, 12> DATA_EXTENSIONS{".png",  ".gif", ".jpg", ".jpeg", ".bmp", ".tif",
                                                            ".tiff", ".pgm", ".svg", ".dxf",  ".stl", ".gbr"};
 
@@ -291,7 +290,7 @@ Response stream(Result<std::shared_ptr<PieceQueue>> pieces) {
     return response;
 }
 
-/// A number of the query from 0 on; nothing where it is another thing.
+/// A number of at least 0 in the query; nothing for other values.
 std::optional<double> factor(const Request &request, const char *name, double preset) {
     const auto found = request.query.find(name);
     const auto value = found == request.query.end() ? std::optional(preset) : parse_double(found->second);
@@ -314,7 +313,7 @@ Response Api::answer_times(const Request &request) {
     const auto name = request.query.find("file");
     const auto feed = factor(request, "feed", 1), rapid = factor(request, "rapid", 1),
                most = factor(request, "max_velocity", 0);
-    constexpr double LEAST = 0.001;  // an override of nothing takes for ever
+    constexpr double LEAST = 0.001;  // an override of 0 would take infinitely long
     if (name == request.query.end() || !feed || !rapid || !most || *feed < LEAST || *rapid < LEAST) {
         return error_response(
             400, "/api/times?file=NAME&feed=1&rapid=1&max_velocity=0: overrides of at least 0.001");

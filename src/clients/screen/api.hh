@@ -21,14 +21,14 @@ struct ApiSetup {
     MachineFacts facts;
     ScreensSetup screens;
     std::string screen_folder;
-    /// Begins to read a program in a separate thread. An error when too many programs are being read. The
-    /// path is in the folder facts.program_prefix.
+    /// Begins to read a program in a separate thread. An error if too many programs are being read. The path
+    /// is in the folder facts.program_prefix.
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const Requester &)> read_path;
-    /// The same for its times, at the overrides of the second.
+    /// As above, for the times of the program at these overrides.
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const TimeOverrides &,
                                                       const Requester &)>
         read_times{};
-    /// The same for a filter that makes `made` from `path`.
+    /// As above, for a filter that converts `path` to `made`.
     std::function<Result<std::shared_ptr<PieceQueue>>(const std::string &path, const std::string &made,
                                                       const Requester &)>
         run_filter{};
@@ -37,7 +37,7 @@ struct ApiSetup {
     HalService::Begin begin_hal{};
 };
 
-/// What may block goes through one of them, so that neither waits for the other; both end before the Api.
+/// Threads for blocking work, so that one does not wait for the other; both end before the Api.
 struct Threads {
     BackgroundJobs &disk, &hal;
 };
@@ -45,15 +45,15 @@ struct Threads {
 /// One thread, except for the jobs that it passes to `threads`.
 class Api final : public Application {
   public:
-    /// Time that never goes back. [ns]
+    /// Monotonic time. [ns]
     using Clock = std::function<std::int64_t()>;
 
-    /// Between two reads of the HAL values that screens show.
+    /// Interval between two reads of the HAL values that screens show.
     static constexpr std::int64_t WATCH_NS = 100000000;
 
     Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock);
 
-    /// Every few milliseconds.
+    /// Call it every few milliseconds.
     void tick();
 
     void answer(const Request &request, Reply reply) override;
@@ -79,9 +79,10 @@ class Api final : public Application {
     Response answer_path(const Request &request);
     Response answer_times(const Request &request);
     Response answer_filter(const Request &request);
-    /// Path of the program that a filter has made, or would make, of a file; nothing where it is one itself.
+    /// Path of the program that a filter has created, or would create, from a file; nothing if the file is a
+    /// program.
     std::optional<std::string> made_of(const std::string &name) const;
-    /// What is interpreted when this is opened.
+    /// The program that is interpreted when this file is opened.
     Result<std::string> program_of(const std::string &name) const;
     Response answer_tools();
     Response metrics() const;
@@ -90,13 +91,13 @@ class Api final : public Application {
     ApiSetup setup_;
     Clock clock_;
     Screens screens_;
-    ProgramFiles files_;  ///< used by jobs alone
+    ProgramFiles files_;  ///< used only by jobs
     UserFiles keepsakes_;
-    MessageLog log_;                     ///< used by jobs alone
-    std::vector<std::string> operable_;  ///< names of HAL that operators set by panels
-    HalService hal_;                     ///< used by jobs alone
-    bool hasHalBegun_ = false;           ///< what waits for HAL is done
-    bool hal_read_ = false;              ///< at this moment
+    MessageLog log_;                     ///< used only by jobs
+    std::vector<std::string> operable_;  ///< HAL names that operators may set by panels
+    HalService hal_;                     ///< used only by jobs
+    bool hasHalBegun_ = false;           ///< work that waits for HAL is done
+    bool hal_read_ = false;              ///< HAL is being read
     std::int64_t next_watch_ns_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What may take long is done beside the server's thread, which stops go through.
+// Runs long work outside of the server's thread, so that stops are not delayed.
 #pragma once
 
 #include <condition_variable>
@@ -13,13 +13,13 @@
 
 namespace mw::screen {
 
-/// Does what may block the server's thread in another one.
+/// Runs blocking work in another thread.
 class BackgroundJobs {
   public:
     using Job = std::function<Response()>;
 
     virtual ~BackgroundJobs() = default;
-    /// One job after the other; `reply` is called in the server's thread with what `job` answers.
+    /// Runs one job after the other; `reply` is called in the server's thread with the result of `job`.
     virtual void run(Job job, Reply reply) = 0;
 };
 
@@ -33,7 +33,7 @@ class Worker final : public BackgroundJobs {
     Worker &operator=(const Worker &) = delete;
 
     void run(Job job, Reply reply) override;
-    /// Ends the job that it does; what waits is dropped.
+    /// Ends the current job; waiting jobs are dropped.
     void end();
 
   private:

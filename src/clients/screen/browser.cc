@@ -9,7 +9,7 @@
 namespace mw::screen {
 namespace {
 
-/// Motion ends the jog by itself when it is not renewed. Not where jogs have no leases.
+/// True if motion ends the jog when it is not renewed; false if jogs have no leases.
 template <class Jog>
 bool hasLease(const Jog &jog) {
     if constexpr (requires { jog.lease_ms; }) {
@@ -19,7 +19,7 @@ bool hasLease(const Jog &jog) {
     }
 }
 
-/// Continues without end when the browser freezes, or the server is killed.
+/// True if the jog would continue without limit when the browser freezes or the server is killed.
 bool isEndless(const messages::Command &command) {
     const auto *jog = std::get_if<messages::JogContinuous>(&command);
     return jog != nullptr && !hasLease(*jog);
@@ -116,7 +116,7 @@ void Browser::carry_out(const Ask &ask, std::int64_t now_ns) {
         return;
     }
     note_jog(command);
-    if (!followed) {  // never the oldest: what takes long is what a person waits for
+    if (!followed) {  // not the oldest command, because the user waits for long commands
         send_(outcome_text(ask.id, {messages::Progress::FAILED,
                                     "the command was sent; too many others are active to follow it"}));
         return;
@@ -157,8 +157,7 @@ bool Browser::isWaitingForStatus() const {
     return std::ranges::any_of(followed_, [](const Followed &one) { return one.done_ns != 0; });
 }
 
-/// The status of the cycle in which a command was done may have been written before it was seen as DONE, or
-/// not.
+/// Decides whether a written status shows the effect of a command that was seen as DONE.
 void Browser::note_shown(std::uint64_t cycle) {
     for (Followed &one : followed_) {
         if (one.done_ns != 0) {
@@ -213,7 +212,7 @@ void Browser::tell_values(const std::map<std::string, std::string> &values) {
     for (const std::string &name : watched_) {
         const auto found = values.find(name);
         if (found == values.end()) {
-            continue;  // watched since they were read
+            continue;  // watched after the values were read
         }
         std::string &told = told_values_[name];
         if (told != found->second) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Descriptors that files of clients leave free for connections, through which stops come.
+// Reserves descriptors for connections, so that files of clients cannot block stops.
 #pragma once
 
 #include <sys/resource.h>
@@ -10,14 +10,14 @@ namespace mw::screen {
 
 inline constexpr rlim_t RESERVED_DESCRIPTORS = 32;
 
-/// `fd` is one of the reserve: not for a file. The kernel gives the lowest number that is free.
+/// True if `fd` is in the reserve and must not be used for a file. The kernel assigns the lowest free number.
 inline bool isReserved(int fd) {
     rlimit limit{};
     return fd >= 0 && ::getrlimit(RLIMIT_NOFILE, &limit) == 0 &&
            static_cast<rlim_t>(fd) + RESERVED_DESCRIPTORS >= limit.rlim_cur;
 }
 
-/// As many as this process may have, and a server can need.
+/// Raises the limit to the maximum that this process may have and a server can need.
 inline void raise_descriptor_limit() {
     constexpr rlim_t ENOUGH = 1024;
     rlimit limit{};

@@ -9,7 +9,7 @@ using hal::Dir;
 
 Dialogs::~Dialogs() {
     if (hal_ != nullptr) {
-        static_cast<void>(hal_->components().remove(component_));  // nothing is to be done where it is gone
+        static_cast<void>(hal_->components().remove(component_));  // nothing to do if HAL has ended
     }
 }
 
@@ -86,7 +86,7 @@ const std::vector<std::size_t> &Dialogs::look() {
                 notes_.push_back(std::string(COMPONENT) + '.' + asker.id + " is " + std::to_string(value) +
                                  ", and [DISPLAY] has no MULTIMESSAGE with this number");
             }
-            set_zero(asker);  // HAL does not wait for an answer to a question that no one reads
+            set_zero(asker);  // HAL must not wait for an answer to a question that nobody sees
         }
         if (is_person || (is_open && now->kind.isLasting)) {
             asked_.push_back(place);
@@ -104,7 +104,7 @@ bool Dialogs::answer(const std::string &id, std::int32_t number, bool is_yes) {
     }
     const std::int32_t value = found->value();
     if (found->isNumbered && value != number) {
-        return false;  // it asks something else by now
+        return false;  // it shows another question now
     }
     found->response = is_yes;
     found->isAsking = false;

@@ -122,7 +122,7 @@ std::string schema_document() {
 
 namespace {
 
-/// Parts of a panel, and whether a person sets a value by them.
+/// Parts of a panel, and whether the operator sets a value with them.
 constexpr std::array<std::pair<std::string_view, bool>, 6> PARTS{{{"lamp", false},
                                                                   {"value", false},
                                                                   {"bar", false},
@@ -172,7 +172,7 @@ Result<> check_panel(std::string_view text) {
 std::vector<std::string> settable_names(std::string_view panel) {
     std::vector<std::string> names;
     if (check_panel(panel).has_value()) {
-        const Json json = messages::parse_json(panel);  // outlives its rows
+        const Json json = messages::parse_json(panel);  // must outlive its rows
         for (const Json &row : json["parts"]) {
             const auto kind = std::ranges::find(PARTS, row["kind"].get<std::string>(),
                                                 &std::pair<std::string_view, bool>::first);

@@ -31,7 +31,7 @@ std::string reason() {
     return std::strerror(errno);
 }
 
-/// One step of a path: no way up, nothing hidden.
+/// True for a path component that is not hidden and does not lead upwards.
 bool isPlainName(std::string_view name) {
     return !name.empty() && name.size() <= LONGEST_NAME && name[0] != '.' &&
            name.find_first_of("/\\") == std::string_view::npos && std::ranges::none_of(name, [](char c) {
@@ -53,7 +53,7 @@ bool write_all(int fd, std::string_view bytes) {
     return true;
 }
 
-/// An open file; holds its descriptor.
+/// An open file, which holds its descriptor.
 class FileBody final : public BodySource {
   public:
     FileBody(int fd, std::uint64_t size) : fd_(fd), size_(size) {}
@@ -80,10 +80,10 @@ class FileBody final : public BodySource {
 
 constexpr std::uint64_t MOST_READ = 256ULL * 1024 * 1024;
 
-/// A regular file, in memory where it is small. 404 where there is none, which `missing` says.
+/// A regular file, in memory if it is small. 404 with the text `missing` if there is none.
 Response file_response(const std::string &path, std::string type, const std::string &missing) {
     const int fd =
-        ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);  // never waits for a pipe
+        ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);  // must not wait for a pipe
     if (fd < 0) {
         return error_response(404, missing);
     }
@@ -110,12 +110,12 @@ Response file_response(const std::string &path, std::string type, const std::str
     return response;
 }
 
-/// Name of the version of a program that was replaced last.
+/// Name of the last replaced version of a program.
 std::string former_of(const std::string &path) {
     return path + '~';
 }
 
-/// Takes the descriptor. Null: there is none, or it cannot be used, see errno.
+/// Takes ownership of the descriptor. Null if there is none or it cannot be used, see errno.
 std::unique_ptr<FileBody> open_body(int fd) {
     struct stat facts{};
     if (fd < 0) {
@@ -128,7 +128,7 @@ std::unique_ptr<FileBody> open_body(int fd) {
     return std::make_unique<FileBody>(fd, static_cast<std::uint64_t>(facts.st_size));
 }
 
-/// From their present places on.
+/// Compares the content from the current positions on.
 bool hasSameContent(BodySource &one, BodySource &other) {
     std::uint64_t same = 0;
     while (same < one.size() && one.size() == other.size()) {
@@ -153,8 +153,8 @@ bool copy_to(BodySource &from, const std::string &target) {
     return copy.has_value() && ::fchmod(copy->fd(), 0644) == 0 && copy->replace_target();
 }
 
-/// The file at `path` is copied to the name of the former version, in place of the one before, if
-/// `replacement` has another content. Errors are in errno.
+/// If `replacement` has another content, copies the file at `path` to the name of the former version,
+/// replacing the previous one. Errors are in errno.
 bool keep_former(const std::string &path, int replacement) {
     const auto open = [&path] { return open_body(::open(path.c_str(), O_RDONLY | O_CLOEXEC)); };
     const auto old = open();
@@ -262,7 +262,7 @@ Response ProgramFiles::read_former(const std::string &name) const {
 
 Response ProgramFiles::begin(const std::string &name, const std::string &path, std::uint64_t size) {
     uploads_.erase(name);
-    if (uploads_.size() >= MOST_UPLOADS) {  // the oldest one is abandoned
+    if (uploads_.size() >= MOST_UPLOADS) {  // the oldest upload is abandoned
         uploads_.erase(
             std::ranges::min_element(uploads_, {}, [](const auto &one) { return one.second.begun; }));
     }
@@ -321,7 +321,7 @@ Response ProgramFiles::finish(const std::string &name, const std::string &path) 
         return error_response(403, "cannot keep the former version of '" + name + "': " + reason() +
                                        "; the new one is not saved");
     }
-    // Never one that the system would run.
+    // Removes the permission to execute the file.
     if (::fchmod(file.fd(), 0644) != 0 || !file.replace_target()) {
         return error_response(403, "cannot write '" + name + "': " + reason());
     }
@@ -366,7 +366,7 @@ Response screen_file(const std::string &folder, const std::string &path) {
                                                : "there is no page '" + printable(path) + "'");
     }
     Response response = file_response(place, type_of(place), "there is no page '" + printable(path) + "'");
-    response.isKept = path.starts_with(ASSETS);  // their names carry a number made from their content
+    response.isKept = path.starts_with(ASSETS);  // their names contain a hash of their content
     return response;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The programs in [DISPLAY]PROGRAM_PREFIX as a browser lists, reads, writes and removes them, and the files
-// of the screen itself.
+// Access of a browser to the programs in [DISPLAY]PROGRAM_PREFIX (list, read, write, remove), and to the
+// files of the screen.
 #pragma once
 
 #include <map>
@@ -15,51 +15,52 @@
 
 namespace mw::screen {
 
-/// Blocks while the disk does. One thread at a time.
+/// Blocks during disk access. One thread at a time.
 class ProgramFiles {
   public:
-    /// Largest program. [bytes]
+    /// Maximum size of a program. [bytes]
     static constexpr std::uint64_t MOST_BYTES = 2ULL * 1024 * 1024 * 1024;
     static constexpr std::size_t MOST_UPLOADS = 8;
 
-    /// Files that end in none of `extensions` (in lower case, with the dot) are not there. Removes the files
-    /// of uploads whose server has died.
+    /// Only files with one of `extensions` (lower case, with the dot) are accessible. Removes the files of
+    /// uploads whose server has died.
     ProgramFiles(std::string folder, std::vector<std::string> extensions);
-    /// Removes the uploads that are not complete.
+    /// Removes incomplete uploads.
     ~ProgramFiles() = default;
     ProgramFiles(const ProgramFiles &) = delete;
     ProgramFiles &operator=(const ProgramFiles &) = delete;
 
     Response list() const;
-    /// `made`: path of the program that a filter has made of it, which is read instead.
+    /// `made` is the path of the program that a filter has created from the file; it is read instead.
     Response read(const std::string &name, const std::optional<std::string> &made = {}) const;
     /// The version that the last write has replaced.
     Response read_former(const std::string &name) const;
-    /// A piece of a file of `size` bytes at its place. Pieces come in their order; the first one begins
-    /// again. With the last one the file gets its name, as a whole or not at all. A file that it replaces by
-    /// another content is kept as NAME~.
+    /// Writes a piece of a file of `size` bytes at its offset. Pieces arrive in order; the first piece starts
+    /// again. With the last piece the file is renamed to its name, completely or not at all. A replaced file
+    /// with another content is kept as NAME~.
     Response write(const std::string &name, std::uint64_t offset, std::uint64_t size, std::string_view piece);
     Response remove(const std::string &name);
 
-    /// Where it lies; an error when it is no name of a program.
+    /// Path of a program; an error if the name is not valid.
     Result<std::string> path_of(const std::string &name) const;
 
   private:
     struct Upload {
         TemporaryFile file;
         std::uint64_t at, size;
-        std::uint64_t begun;  ///< which upload it is
+        std::uint64_t begun;  ///< identifies the upload
     };
     Response begin(const std::string &name, const std::string &path, std::uint64_t size);
     Response finish(const std::string &name, const std::string &path);
 
     std::string folder_;
     std::vector<std::string> extensions_;
-    std::map<std::string, Upload> uploads_;  ///< by name
+    std::map<std::string, Upload> uploads_;  ///< uploads by name
     std::uint64_t begun_ = 0;
 };
 
-/// Of the screen: "/" is index.html, other paths are files below `folder`; nothing else is reached.
+/// A file of the screen: "/" is index.html, other paths are files below `folder`. Other files are not
+/// accessible.
 Response screen_file(const std::string &folder, const std::string &path);
 
 }  // namespace mw::screen

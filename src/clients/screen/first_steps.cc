@@ -27,7 +27,7 @@ Response document(const Json &json) {
     return response;
 }
 
-/// An object; null when it is none.
+/// Parses an object; null if it is not an object.
 Json object_of(const std::string &body) {
     constexpr bool HAS_EXCEPTIONS = false;
     const auto isFlat = [](int depth, Json::parse_event_t, Json &) { return depth < 4; };
@@ -73,7 +73,7 @@ Json faults_document(const std::vector<setup::Fault> &faults) {
     return list;
 }
 
-/// Questions for the machine of these answers, their errors, and the files that they produce.
+/// Questions for the machine with these answers, their errors, and the resulting files.
 Response questions_document(const std::string &body) {
     auto answers = answers_of(object_of(body));
     if (!answers.has_value()) {
@@ -92,7 +92,7 @@ Response questions_document(const std::string &body) {
         }
         list.push_back(std::move(one));
     }
-    // Answers to what is asked no more are no fault: the person has gone back.
+    // Answers to questions that are no longer asked are not errors, because the user may have gone back.
     std::erase_if(*answers, [&asked](const auto &answer) {
         return std::ranges::find(asked, answer.first, &setup::Question::key) == asked.end();
     });
@@ -267,7 +267,7 @@ void FirstSteps::reject_steps(SessionId session, const std::string &why) {
     sockets_.send(session, document(Json{{"state", "error"}, {"error", why}}).body);
 }
 
-/// {"key", "ini"}: the first text of a socket.
+/// Handles {"key", "ini"}: the first text of a socket.
 void FirstSteps::begin_steps(SessionId session, std::string_view text) {
     const Json json = object_of(std::string(text));
     if (!json.is_object() || !trusted_.contains(session) || !areSame(text_at(json, "key"), setup_.key)) {

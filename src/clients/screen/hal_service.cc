@@ -33,7 +33,7 @@ constexpr std::array<std::pair<TriggerKind, const char *>, 6> TRIGGERS{{{Trigger
 Json json_of(const hal::Value &value) {
     switch (value.type) {
     case hal::Type::BIT: return value.as_bit();
-    case hal::Type::FLOAT: return value.as_float();  // null where it is not finite
+    case hal::Type::FLOAT: return value.as_float();  // null if it is not finite
     case hal::Type::S32: return value.as_s32();
     case hal::Type::U32:
     case hal::Type::PORT: return value.as_u32();
@@ -43,7 +43,7 @@ Json json_of(const hal::Value &value) {
     return nullptr;
 }
 
-/// Readers of HAL wait for it.
+/// Maximum number of pulses, because readers of HAL wait for them.
 constexpr std::uint32_t MOST_PULSE_MS = 500;
 
 std::string text_of(const Json &json) {
@@ -85,7 +85,7 @@ Json signal_document(const hal::SignalInfo &signal) {
             {"value", json_of(signal.value)}};
 }
 
-/// A member of its type; `preset` where it is missing, nothing where it is of another type.
+/// A member of this type; `preset` if it is missing, nothing if it has another type.
 template <class T>
 std::optional<T> member(const Json &json, const char *name, T preset) {
     const auto found = json.find(name);

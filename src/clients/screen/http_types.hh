@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What comes from a browser and what it gets, without the library that carries it.
+// Requests from browsers and their answers, independent of the HTTP library.
 #pragma once
 
 #include <cstddef>
@@ -15,26 +15,26 @@
 
 namespace mw::screen {
 
-/// Rights of a request; each role includes the rights of those before it.
-/// STATUS: sees the status and messages of the machine, and may stop it.
+/// Rights of a request; each role includes the rights of the roles before it. STATUS: reads the status and
+/// messages of the machine, and may stop it.
 enum class Role : std::uint8_t { NOBODY, STATUS, VIEW, OPERATE, CONFIGURE };
 
 /// Protection of a connection.
 enum class Protection : std::uint8_t {
-    LOCAL,  ///< none leaves this computer
+    LOCAL,  ///< only on this computer
     TLS,    ///< encrypted, and only with a token
-    NONE    ///< as the server was started
+    NONE    ///< as selected at the start of the server
 };
 
-/// Of one browser.
+/// Rights of one browser.
 struct Rights {
     Role role = Role::NOBODY;
     Protection protection = Protection::LOCAL;
 };
 
-/// By whom a request was sent.
+/// The sender of a request.
 struct Requester {
-    std::string address;  ///< of its computer
+    std::string address;  ///< address of its computer
     Role role = Role::NOBODY;
 };
 
@@ -44,23 +44,23 @@ struct Request {
     std::map<std::string, std::string> query;
     std::string body;
     Role role = Role::NOBODY;
-    std::string address{};  ///< of the computer that sent it
+    std::string address{};  ///< address of the sender's computer
 };
 
 /// A path with its query as in a request; nothing when it is invalid (no leading '/', a broken
 /// escape, a control character).
 std::optional<Request> parse_target(std::string_view target);
 
-/// A body of known size that is read while it is sent: of each client one piece is in memory.
+/// A body of known size that is read while it is sent; for each client one piece is in memory.
 class BodySource {
   public:
-    /// Bytes of one piece.
+    /// Size of one piece. [bytes]
     static constexpr std::size_t PIECE = 256UL * 1024;
 
     virtual ~BodySource() = default;
     virtual std::uint64_t size() const = 0;
-    /// The next piece; empty: there are no more, or the file cannot be read any more. Blocks while the disk
-    /// does. One thread at a time.
+    /// The next piece; empty if there are no more, or the file can no longer be read. Blocks during disk
+    /// access. One thread at a time.
     virtual std::string read() = 0;
 };
 
@@ -68,30 +68,31 @@ struct Response {
     int status = 200;
     std::string type = "application/json";
     std::string body{};
-    bool isKept = false;  ///< the browser need never ask again: another content has another name
+    bool isKept = false;  ///< the browser may keep it without asking again, because another content has
+                          ///< another name
     std::shared_ptr<PieceQueue> pieces{};  ///< instead of a body
     std::shared_ptr<BodySource> source{};  ///< instead of a body
-    std::string cookie{};                  ///< for the browser to keep; empty: none
+    std::string cookie{};                  ///< cookie for the browser; empty: none
 };
 
-/// To be called once, in the server's thread.
+/// Must be called once, in the server's thread.
 using Reply = std::function<void(Response)>;
 
 /// A browser's open socket. Never 0, unique.
 using SessionId = std::uint64_t;
 
-/// What may be done with open sockets. [server's thread]
+/// Functions for open sockets. [server's thread]
 class Sockets {
   public:
     virtual ~Sockets() = default;
-    /// After all that was sent before. A browser that lets too much wait is disconnected.
+    /// Sends after all earlier data. A browser with too many waiting data is disconnected.
     virtual void send(SessionId session, std::string text) = 0;
-    /// Nothing waits to be sent.
+    /// True if no data wait to be sent.
     virtual bool isIdle(SessionId session) const = 0;
     virtual void close(SessionId session) = 0;
 };
 
-/// Who answers. Never called from within a call to Sockets. [server's thread]
+/// The receiver of requests. Never called from within a call to Sockets. [server's thread]
 class Application {
   public:
     virtual ~Application() = default;

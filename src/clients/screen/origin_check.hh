@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whose pages may ask, and how often.
+// Pages that may send requests, and the rate of their requests.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@
 
 namespace mw::screen {
 
-/// What a browser says about the page that asks; empty where it says nothing.
+/// Data of a browser about the page that sends the request; empty if missing.
 struct RequestOrigin {
     std::string_view host;    ///< header Host
     std::string_view origin;  ///< header Origin
     std::string_view site;    ///< header Sec-Fetch-Site
 };
 
-/// Accepts pages of this server and no others: neither those of other sites, nor those of a name that a
-/// foreign name server resolves to this server.
+/// Accepts only pages of this server. Rejects pages of other sites, and of names that a foreign name server
+/// resolves to this server.
 class OriginCheck {
   public:
-    /// `names` of the server in small letters, without a port; an IPv6 address in brackets. `port` as it
+    /// `names` of the server in lower case, without a port; an IPv6 address in brackets. `port` at which it
     /// listens.
     OriginCheck(bool hasTls, int port, const std::vector<std::string> &names);
 
-    /// `address`: where the connection ends on this side, a name of the server, too; empty: none.
+    /// `address`: address of this side of the connection, also a name of the server; empty: none.
     Result<> check(const RequestOrigin &asker, std::string_view path, std::string_view address = {}) const;
 
   private:
@@ -37,12 +37,12 @@ class OriginCheck {
     std::vector<std::string> names_;
 };
 
-/// A bucket of `at_once` requests that fills by `per_s`.
+/// A token bucket of `at_once` requests that is filled at the rate `per_s`.
 class RateLimit {
   public:
     RateLimit(double per_s, double at_once) : per_s_(per_s), most_(at_once), left_(at_once) {}
 
-    /// False: not now. Time never goes back.
+    /// False if the request is not permitted now. The time is monotonic.
     bool take(std::int64_t now_ns);
 
   private:

@@ -68,7 +68,7 @@ void PathChunks::add(const gcode::PreviewEvent &event) {
     }
 }
 
-/// A line that rotary axes bend in the picture consists of chords.
+/// A line that rotary axes curve in the picture consists of chords.
 void PathChunks::add_straight(const gcode::PreviewEvent &event, const geometry::Pose &from,
                               const geometry::Pose &to, std::uint8_t kind) {
     constexpr double CHORD_DEG = 3, MOST_CHORDS = 20000;
@@ -96,10 +96,10 @@ void PathChunks::add_straight(const gcode::PreviewEvent &event, const geometry::
     add_point(to, event, kind);
 }
 
-/// The radius and the height change evenly on the way round; so do the coordinates that are not of the arc.
+/// Radius, height and the coordinates that do not belong to the arc change linearly along the arc.
 void PathChunks::add_arc(const gcode::PreviewEvent &event) {
     constexpr int MOST_PER_TURN = 4096, LEAST_PER_TURN = 12;
-    constexpr double MOST_CHORDS = 100000;  // of a helix
+    constexpr double MOST_CHORDS = 100000;  // maximum for a helix
     const auto kind = static_cast<std::uint8_t>(Move::ARC);
     note_range(event, kind);
     note_offset(event);
@@ -144,7 +144,7 @@ void PathChunks::add_arc(const gcode::PreviewEvent &event) {
     add_point(event.end, event, kind);
 }
 
-/// Rapid moves have no feed, and do not change that of the last cut.
+/// Rapid moves have no feed, and do not change the feed of the last cut.
 void PathChunks::note_range(const gcode::PreviewEvent &event, std::uint8_t kind) {
     constexpr double S_PER_MIN = 60;
     const geometry::MoveSettings &settings = event.settings;
@@ -163,7 +163,7 @@ void PathChunks::note_range(const gcode::PreviewEvent &event, std::uint8_t kind)
     }
 }
 
-/// The same count of points as in ranges: a client that knows the offset of a move has its tool tip.
+/// Points are counted as in ranges, so a client with the offset of a move can calculate its tool tip.
 void PathChunks::note_offset(const gcode::PreviewEvent &event) {
     std::array<float, 3> active{};
     for (int axis = geometry::AXIS_X; axis <= geometry::AXIS_Z; ++axis) {
@@ -175,7 +175,7 @@ void PathChunks::note_offset(const gcode::PreviewEvent &event) {
     }
 }
 
-/// The first line that moves A, B or C.
+/// Stores the first line that moves A, B or C.
 void PathChunks::note_rotary(const gcode::PreviewEvent &event) {
     for (int axis = geometry::AXIS_A; axis <= geometry::AXIS_C && !rotary_line_.has_value(); ++axis) {
         if (event.start[axis] != event.end[axis]) {
@@ -258,7 +258,7 @@ bool PathChunks::send() {
             append(body, ranges_[i].feed);
             append(body, ranges_[i].tool);
         }
-        ranges_.erase(ranges_.begin(), ranges_.end() - 1);  // the active one
+        ranges_.erase(ranges_.begin(), ranges_.end() - 1);  // the current range
         unsent_ = 0;
         is_read_ = is_read_ && push_(chunk(Chunk::RANGES, std::move(body), '\0'));
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The path of a program as the bytes of /api/path: flat arrays that a browser hands to its graphics as they
-// are.
+// The path of a program as the bytes of /api/path: flat arrays that a browser passes to its graphics
+// unchanged.
 #pragma once
 
 #include <array>
@@ -17,39 +17,40 @@
 
 namespace mw::screen {
 
-/// Arcs become chords. One thread.
+/// Arcs are converted to chords. One thread.
 class PathChunks {
   public:
-    /// Chords are at most so far from their arc. [mm]
+    /// Maximum distance of chords from their arc. [mm]
     static constexpr double DEVIATION_MM = 0.005;
     static constexpr std::size_t POINTS_PER_CHUNK = 16384;
 
-    /// `push` takes a chunk; false: the reader has gone. `unit_mm`: of the machine unit.
+    /// `push` takes a chunk; false if the reader has left. `unit_mm` is that of the machine unit.
     PathChunks(std::function<bool(std::string)> push, double unit_mm, PathLook look = {})
         : push_(std::move(push)), unit_mm_(unit_mm), look_(std::move(look)) {}
 
-    /// The first ones are sent at once, later ones when a chunk is full. False: the reader has gone.
+    /// Takes events. The first ones are sent at once, later ones when a chunk is full. False if the reader
+    /// has left.
     bool take(std::span<const gcode::PreviewEvent> events);
     void error(std::string_view text);
-    /// What is left, the bounds and the end.
+    /// Sends the rest, the bounds and the end.
     void end(std::uint32_t lines);
-    /// Points of all chunks up to now, those in two chunks counted once.
+    /// Number of points in all chunks so far; points in two chunks are counted once.
     std::uint32_t count() const { return count_; }
 
   private:
     struct Point {
         std::array<float, 3> place{};
-        std::array<float, 3> wire{};  ///< of a foam cutter: the other end
+        std::array<float, 3> wire{};  ///< foam cutter: the other end
         std::uint32_t line = 0;
         std::uint8_t kind = 0;
     };
-    /// Values from a point on.
+    /// Values that apply from a point on.
     struct Range {
         std::uint32_t first = 0;
         float feed = 0;
         std::uint32_t tool = 0;
     };
-    /// Tool offset from a point on. [machine units]
+    /// Tool offset that applies from a point on. [machine units]
     struct ToolOffset {
         std::uint32_t first = 0;
         std::array<float, 3> xyz{};
@@ -70,10 +71,10 @@ class PathChunks {
     double unit_mm_;
     PathLook look_;
     std::vector<Point> points_;
-    std::vector<Range> ranges_;        ///< the active one, and those that have not been sent
-    std::size_t unsent_ = 0;           ///< of them, at the end
-    Range range_;                      ///< that holds now
-    std::vector<ToolOffset> offsets_;  ///< not sent
+    std::vector<Range> ranges_;        ///< the current range, and ranges that have not been sent
+    std::size_t unsent_ = 0;           ///< number of unsent ranges, at the end
+    Range range_;                      ///< current range
+    std::vector<ToolOffset> offsets_;  ///< not sent yet
     std::array<float, 3> offset_{};    ///< active
     std::optional<std::uint32_t> rotary_line_;
     bool has_sent_rotary_ = false;

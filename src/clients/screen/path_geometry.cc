@@ -63,7 +63,7 @@ bool PathGeometry::isTurnedBetween(const geometry::Pose &from, const geometry::P
 }
 
 bool PathGeometry::isPlain() const {
-    // A turn of nothing, done before all translations, is none.
+    // A rotation before all translations has no effect on the origin and is omitted.
     bool has_moved = false;
     for (const Step &step : steps_) {
         const bool is_turn = geometry::isAngular(step.axis);

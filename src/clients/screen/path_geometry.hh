@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where a pose is drawn: [DISPLAY]GEOMETRY, and the two planes of a foam cutter.
+// Position of a pose in the picture: [DISPLAY]GEOMETRY, and the two planes of a foam cutter.
 #pragma once
 
 #include <array>
@@ -14,23 +14,23 @@ namespace mw::screen {
 
 using Place = std::array<double, 3>;  ///< X, Y, Z of the picture [machine units]
 
-/// A sequence of translations and turns, done from its last letter to its first: "AXYZ" moves along X, Y and
-/// Z, then turns about X by A.
+/// A sequence of translations and rotations, executed from its last letter to its first: "AXYZ" moves along
+/// X, Y and Z, then rotates about X by A.
 class PathGeometry {
   public:
     static constexpr std::string_view PRESET = "XYZABCUVW";
 
-    /// X, Y and Z as they are.
+    /// X, Y and Z unchanged.
     PathGeometry() : PathGeometry(*parse(PRESET, "XYZ")) {}
-    /// Letters X Y Z and U V W (translations) and A B C (turns about X, Y, Z), each with '-' before it where
-    /// it goes the other way; those that are not in `axes` do nothing. '!' and ';' are taken and change
-    /// nothing. An error for anything else.
+    /// Letters X Y Z and U V W (translations) and A B C (rotations about X, Y, Z), each with '-' before it if
+    /// reversed. Letters that are not in `axes` have no effect; '!' and ';' are ignored. An error for other
+    /// characters.
     static Result<PathGeometry> parse(std::string_view text, std::string_view axes);
 
     Place place(const geometry::Pose &pose) const;
-    /// Turns of this pose change the picture: straight moves with them are curves there.
+    /// True if rotations of this pose change the picture, so that straight moves with them are curves.
     bool isTurnedBetween(const geometry::Pose &from, const geometry::Pose &to) const;
-    /// What is drawn is X, Y, Z of the machine, turned by nothing.
+    /// True if the picture shows X, Y, Z of the machine without rotation.
     bool isPlain() const;
 
   private:
@@ -39,7 +39,7 @@ class PathGeometry {
         double sign = 1;
     };
     explicit PathGeometry(std::vector<Step> steps) : steps_(std::move(steps)) {}
-    std::vector<Step> steps_;  ///< in the order in which they are done
+    std::vector<Step> steps_;  ///< in the order of execution
 };
 
 /// A wire through two planes: X and Y at one height, U and V at another.
@@ -49,7 +49,7 @@ struct FoamPlanes {
 
 struct PathLook {
     PathGeometry geometry{};
-    std::optional<FoamPlanes> foam{};  ///< of a foam cutter, which has no use for `geometry`
+    std::optional<FoamPlanes> foam{};  ///< for a foam cutter, which does not use `geometry`
 };
 
 }  // namespace mw::screen

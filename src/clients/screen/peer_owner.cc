@@ -44,7 +44,7 @@ Query query_of(const Endpoint &client, const Endpoint &server, std::uint32_t num
     return query;
 }
 
-/// An IPv4 address is the last word of one that an IPv6 socket has (::ffff:127.0.0.1).
+/// An IPv4 address is the last word of an IPv6 socket's address (::ffff:127.0.0.1).
 std::uint32_t address_of(const std::uint8_t family, const std::uint32_t (&words)[4]) {
     return ntohl(family == AF_INET ? words[0] : words[3]);
 }
@@ -67,7 +67,7 @@ Result<SocketFacts> facts_of(const nlmsghdr &head) {
 
 }  // namespace
 
-/// Closes itself.
+/// A netlink socket that is closed by its destructor.
 class SocketFinder::Netlink {
   public:
     Netlink()
@@ -105,7 +105,7 @@ Result<SocketFacts> SocketFinder::operator()(const Endpoint &client, const Endpo
     const auto *const head = reinterpret_cast<const nlmsghdr *>(bytes.data());
     sockaddr_nl sender{};
     socklen_t size = sizeof sender;
-    // The kernel answers within the call of sendto(), so there is nothing to wait for.
+    // The kernel answers within the call of sendto(), so there is no wait.
     const ssize_t got = ::recvfrom(fd, bytes.data(), bytes.size(), MSG_DONTWAIT,
                                    reinterpret_cast<sockaddr *>(&sender), &size);
     if (got < 0) {

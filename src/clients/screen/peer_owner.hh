@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which user of this computer has opened a connection, by what the kernel knows of its other end.
+// Finds out which user of this computer has opened a connection, from the kernel's data about the other end.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct Endpoint {
 struct SocketFacts {
     Endpoint own, peer;
     std::uint8_t state = 0;   ///< TCP_ESTABLISHED and others of netinet/tcp.h
-    std::uint32_t inode = 0;  ///< 0: no process has it open; `uid` means nothing then
-    std::uint32_t uid = 0;    ///< of the user that has made it
+    std::uint32_t inode = 0;  ///< 0: no process has it open; `uid` is then without meaning
+    std::uint32_t uid = 0;    ///< id of the user that created it
 };
 
 enum class PeerOwner : std::uint8_t {
@@ -29,8 +29,8 @@ enum class PeerOwner : std::uint8_t {
     OTHER
 };
 
-/// Asks the kernel through NETLINK_SOCK_DIAG. Opens its descriptor once: also a process without a free
-/// descriptor can ask. One thread.
+/// Asks the kernel through NETLINK_SOCK_DIAG. Opens its descriptor only once, so a process without a free
+/// descriptor can ask, too. One thread.
 class SocketFinder {
   public:
     SocketFinder();
@@ -44,8 +44,8 @@ class SocketFinder {
     std::uint32_t requests_ = 0;
 };
 
-/// SERVER_USER only for an established socket with these ends, which a process has open, of `server_uid` or
-/// root. The kernel reports user 0 for sockets that no process has open, and OVERFLOW_UID for users that this
+/// SERVER_USER only for an established socket with these ends that a process of `server_uid` or root has
+/// open. The kernel reports user 0 for sockets that no process has open, and OVERFLOW_UID for users that this
 /// user namespace does not have.
 PeerOwner owner_of(const SocketFacts &socket, const Endpoint &client, const Endpoint &server,
                    std::uint32_t server_uid);

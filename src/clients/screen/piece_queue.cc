@@ -59,7 +59,7 @@ PieceQueue::State PieceQueue::take(std::string &piece, std::function<void()> wak
 }
 
 void PieceQueue::cancel() {
-    std::function<void()> unused;  // ends without the lock: it may own the sender
+    std::function<void()> unused;  // destroyed without the lock, because it may own the sender
     const std::lock_guard lock(mutex_);
     isCancelled_ = true;
     std::swap(unused, wake_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A body that one thread makes piece by piece and another sends, in bounded memory.
+// A body that one thread creates in pieces and another thread sends, in bounded memory.
 #pragma once
 
 #include <condition_variable>
@@ -13,25 +13,26 @@ namespace mw::screen {
 
 class PieceQueue {
   public:
-    /// Bytes that may wait to be sent; a single piece may be larger.
+    /// Maximum number of bytes that wait to be sent; a single piece may be larger.
     static constexpr std::size_t MOST_WAITING = 4UL * 1024 * 1024;
     enum class State { PIECE, LATER, END };
 
-    // Of the maker's thread.
+    // --- for the creating thread
 
-    /// Sleeps while too much waits. False: the reader has gone, and no further piece is needed.
+    /// Sleeps while too many data wait. False if the reader has left, so that no further piece is needed.
     bool push(std::string piece);
-    /// push() would not sleep now.
+    /// True if push() would not sleep now.
     bool hasRoom() const;
-    /// There are no more.
+    /// There are no more pieces.
     void end();
     bool isCancelled() const;
 
-    // Of the sender's thread.
+    // --- for the sending thread
 
-    /// PIECE: the next one is in `piece`. LATER: `wake` is called, in the maker's thread, when there is more.
+    /// PIECE: the next piece is in `piece`. LATER: `wake` will be called, in the creating thread, when there
+    /// is more.
     State take(std::string &piece, std::function<void()> wake);
-    /// The reader has gone.
+    /// Called when the reader has left.
     void cancel();
 
   private:

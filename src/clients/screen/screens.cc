@@ -18,7 +18,7 @@ std::string random_name() {
     return fmt::format("{:08x}{:08x}", random(), random());
 }
 
-/// The text of a message or note with its age. A screen shows its time of arrival by its own clock.
+/// The text of a message or note with its age. A screen shows its time by the screen's clock.
 std::string aged(const std::string &text, std::int64_t age_ns) {
     constexpr std::int64_t NS_PER_MS = 1000000;
     return text.substr(0, text.size() - 1) + ",\"age_ms\":" + std::to_string(age_ns / NS_PER_MS) + '}';
@@ -152,7 +152,7 @@ void Screens::look_for_machine() {
             return;
         }
         watch_.emplace(std::move(*client));
-        watch_->rewind_messages(MOST_KEPT);  // also those that appeared before this server was started
+        watch_->rewind_messages(MOST_KEPT);  // also messages from before the start of this server
         log("the machine is running");
         has_status_ = false;
     }
@@ -251,7 +251,7 @@ void Screens::pass_messages() {
     }
 }
 
-/// The server lives and task does not: stopped, or hung.
+/// Reports that the server is alive but task is not: it is stopped, or hangs.
 void Screens::tell_silence() {
     constexpr std::int64_t LONGEST_NS = 500000000, AGAIN_NS = 500000000;
     const std::uint64_t cycle = watch_->status().cycle;
@@ -268,7 +268,7 @@ void Screens::tell_silence() {
     }
 }
 
-/// `is_due`: to all; otherwise to those with a command that is done.
+/// `is_due`: sends to all screens; otherwise to those with a completed command.
 void Screens::tell_statuses(bool is_due) {
     const bool is_read = watch_->read_status().has_value();
     has_status_ = has_status_ || is_read;
@@ -276,12 +276,12 @@ void Screens::tell_statuses(bool is_due) {
         tell_silence();
     }
     if (!is_read) {
-        return;  // it has not begun, or has died, which the next look finds
+        return;  // task has not begun, or has died, which the next check detects
     }
     const PartMask fresh = watch_->fresh_parts();
     for (const auto &[session, browser] : browsers_) {
         browser->note_read(fresh);
-        // A slow screen gets the rest with its next status.
+        // A slow screen receives the rest with its next status.
         if ((is_due || browser->isWaitingForStatus()) && browser->isAttached() && sockets_.isIdle(session)) {
             browser->tell_status(watch_->status());
         }

@@ -59,7 +59,7 @@ bool add_extension(X509 *certificate, int kind, const std::string &value) {
     return one != nullptr && X509_add_ext(certificate, one.get(), -1) == 1;
 }
 
-/// Signed by its own key; null when OpenSSL fails.
+/// A certificate signed with its own key; null when OpenSSL fails.
 X509Ptr sign_new(EVP_PKEY *key, const std::vector<std::string> &names) {
     constexpr int VERSION_3 = 2;
     constexpr long TEN_YEARS_S = 3650L * 24 * 3600;
@@ -68,7 +68,8 @@ X509Ptr sign_new(EVP_PKEY *key, const std::vector<std::string> &names) {
     if (made == nullptr || RAND_bytes(serial.data(), serial.size()) != 1) {
         return nullptr;
     }
-    serial[0] = static_cast<unsigned char>((serial[0] & 0x3fU) | 0x40U);  // positive, all bytes count: DER
+    // positive, and all bytes are significant: DER
+    serial[0] = static_cast<unsigned char>((serial[0] & 0x3fU) | 0x40U);
     X509_set_version(made.get(), VERSION_3);
     ASN1_STRING_set(X509_get_serialNumber(made.get()), serial.data(), serial.size());
     X509_gmtime_adj(X509_getm_notBefore(made.get()), -24L * 3600);  // clocks differ
@@ -163,7 +164,7 @@ Result<std::optional<std::string>> read_secret_file(const std::string &path) {
     if (!text.has_value()) {
         return std::unexpected(text.error());
     }
-    return text->empty() ? std::nullopt : std::optional(std::move(*text));  // truncated when it was written
+    return text->empty() ? std::nullopt : std::optional(std::move(*text));  // it was truncated during writing
 }
 
 Result<> write_secret_file(const std::string &path, std::string_view text) {
@@ -173,7 +174,7 @@ Result<> write_secret_file(const std::string &path, std::string_view text) {
     if (error) {
         return fail("cannot make the folder " + folder.string() + ": " + error.message());
     }
-    // The file has its permissions before it has a content; replacing keeps them.
+    // The file gets its permissions before its content; replacing keeps them.
     const int fd = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
     if (fd < 0 && errno != EEXIST) {
         return fail("cannot write " + path + ": " + std::strerror(errno));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The only file that includes Boost.Beast, by headers of `detail`: a heavy header.
+// Implemented with Boost.Beast, a heavy header that only this file includes, partly through headers of
+// `detail`.
 #include "clients/screen/server.hh"
 
 #include <unistd.h>
@@ -16,7 +17,7 @@ using namespace detail;
 
 constexpr std::chrono::milliseconds ACCEPT_PAUSE{50};
 
-/// Everything that a page needs is served from here, and no other page may hold it in a frame.
+/// All parts of a page come from this server, and no other page may show it in a frame.
 constexpr const char *PAGE_RULES = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' "
                                    "data: blob:; worker-src 'self' blob:; "
                                    "frame-ancestors 'none'";
@@ -119,7 +120,7 @@ void Server::Impl::accept(Listener &listener) {
         if (error == net::error::operation_aborted) {
             return;
         }
-        if (error) {  // no file handles left: not again at once
+        if (error) {  // no free descriptor, so accepting waits
             accept_later(listener);
             return;
         }

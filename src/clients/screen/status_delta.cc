@@ -13,13 +13,13 @@ namespace {
 using messages::Field;
 using messages::Kind;
 
-/// Walks two statuses by their declarations.
+/// Compares two statuses by their declarations.
 class Comparison {
   public:
     Comparison(const messages::MachineStatus &now, PartMask parts)
         : begin_(reinterpret_cast<const char *>(&now)), parts_(parts) {}
 
-    /// Appends {...} with what differs; false, and nothing, when nothing does.
+    /// Appends {...} with the differences; false, and no text, if there are none.
     bool fields(const messages::Declaration &declaration, const void *now, const void *told) {
         const std::size_t before = text.size();
         for (const Field &field : declaration.fields) {
@@ -65,7 +65,7 @@ class Comparison {
         return !same;
     }
 
-    /// Whether any of its bytes lies in a part that is compared.
+    /// True if any of its bytes is in a part that is compared.
     bool isFresh(const messages::Type &type, const void *at) const {
         const auto &starts = messages::status_part::STARTS;
         const auto low = static_cast<std::size_t>(static_cast<const char *>(at) - begin_);
@@ -79,7 +79,7 @@ class Comparison {
         return false;
     }
 
-    /// @return the length to return to when it has no change
+    /// @return the length to which the text is cut if there is no change
     std::size_t begin(std::size_t object, std::string_view name) {
         const std::size_t undo = text.size();
         text += text.size() == object ? "{\"" : ",\"";

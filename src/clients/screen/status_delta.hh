@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The status as a browser gets it: whole at first, then what has changed since.
+// The status for a browser: first completely, then changes.
 #pragma once
 
 #include <memory>
@@ -9,14 +9,14 @@
 
 namespace mw::screen {
 
-/// Of one browser. One thread.
+/// For one browser. One thread.
 class StatusDelta {
   public:
-    /// The whole status as JSON; later changes are relative to it.
+    /// The complete status as JSON; later changes are relative to it.
     std::string whole(const messages::MachineStatus &now);
-    /// The fields that are other than told last, nested as in the whole; of an array the elements, by index:
-    /// {"joints":{"2":{"pos_cmd":4.5}}}. Empty when nothing is. Only `parts` (messages::status_part) are
-    /// compared: those that have been read since.
+    /// The fields that differ from the last status, nested as in the complete status; of an array the changed
+    /// elements, by index: {"joints":{"2":{"pos_cmd":4.5}}}. Empty if there are none. Only `parts`
+    /// (messages::status_part) are compared: the parts that were read since the last call.
     std::string next(const messages::MachineStatus &now, PartMask parts = messages::PublishedStatus::ALL);
 
   private:

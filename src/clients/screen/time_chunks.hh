@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How long a program takes, move by move, as the bytes of /api/times.
+// The duration of a program, move by move, as the bytes of /api/times.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace mw::screen {
 
-/// The time is lost here, against the feed.
+/// A position where time is lost compared with the feed.
 struct SlowSpot {
     std::string file;
     bool in_program = true;  ///< not in another file
@@ -35,13 +35,13 @@ class TimeChunks {
   public:
     static constexpr std::size_t MOVES_PER_CHUNK = 16384;
 
-    /// `push` takes a chunk; false: the reader has gone.
+    /// `push` takes a chunk; false if the reader has left.
     explicit TimeChunks(std::function<bool(std::string)> push) : push_(std::move(push)) {}
 
-    /// `point`: number of the last point of the path, as PathChunks counts, that belongs to it.
+    /// `point`: number of the last point of the path that belongs to the move, as counted by PathChunks.
     void move(std::uint32_t point, std::uint32_t line, double seconds, double speed);
     void error(std::string_view text);
-    /// What is left, and what it comes to.
+    /// Sends the rest and the sums.
     void end(const TimeSum &sum);
 
   private:

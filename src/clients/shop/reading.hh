@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a shop stores of its machines.
+// The data of a shop about its machines.
 #pragma once
 
 #include <compare>
@@ -41,7 +41,7 @@ struct Series {
 /// Number of a series in this process, from 0.
 using SeriesId = std::uint32_t;
 
-/// The key is series and time: a value that comes twice has the same key.
+/// The key is series and time, so a repeated value has the same key.
 struct Reading {
     SeriesId series = 0;
     TimeMs at = 0;
@@ -49,13 +49,13 @@ struct Reading {
     TimeMs late_ms = 0;  ///< age of the value when the machine sent it
 };
 
-/// A machine is there, or has gone.
+/// A machine has started or ended.
 /// Times of the presences of a machine increase strictly.
 struct Presence {
     MachineName machine;
-    TimeMs at = 0;  ///< of the clock of the machine
+    TimeMs at = 0;  ///< by the clock of the machine
     bool isAlive = false;
-    std::int64_t clock_ahead_ms = 0;  ///< of the machine, compared with this computer
+    std::int64_t clock_ahead_ms = 0;  ///< difference of the machine's clock from this computer's
 };
 
 struct NodeReceipt {
@@ -63,19 +63,19 @@ struct NodeReceipt {
     Receipt receipt;
 };
 
-/// The machines that are there; others of these groups ended while no collector ran.
+/// The running machines; other machines of these groups ended while no collector ran.
 struct Census {
     std::vector<MachineName> present;
     std::vector<std::string> groups;  ///< empty: all
 };
 
-/// Is stored as a whole or not at all.
+/// Stored completely or not at all.
 struct Batch {
     std::vector<Series> new_series;  ///< their numbers follow those of earlier batches
     std::vector<Reading> readings;
     std::vector<Presence> presences;
     std::optional<Census> census;
-    std::vector<NodeReceipt> receipts;  ///< to be sent when the batch is stored
+    std::vector<NodeReceipt> receipts;  ///< sent when the batch is stored
 
     bool isEmpty() const {
         return new_series.empty() && readings.empty() && presences.empty() && !census.has_value() &&

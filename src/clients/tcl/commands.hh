@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The commands emc_*: a row for each.
+// The commands emc_*: one row for each.
 #pragma once
 
 #include <span>
@@ -9,21 +9,21 @@
 
 namespace mw::tcl {
 
-/// The words behind the name; the result. An error is one of the Tcl program.
+/// Takes the words after the name and returns the result. An error is an error of the Tcl program.
 using Handler = Result<std::string> (*)(Shell &, const Words &);
 
 struct CommandRow {
     const char *name;
-    int least, most;    ///< words behind the name
-    const char *usage;  ///< those words
+    int least, most;    ///< minimum and maximum number of words after the name
+    const char *usage;  ///< usage of these words
     Handler handler;
 };
 
-/// Values of the status; some also set it.
+/// Values of the status; some commands also set them.
 std::span<const CommandRow> questions();
-/// Orders; without words most of them return the current value.
+/// Orders; most of them return the current value if called without words.
 std::span<const CommandRow> orders();
-/// The INI file, the connection, numbers.
+/// Commands for the INI file, the connection, and number formats.
 std::span<const CommandRow> settings();
 
 }  // namespace mw::tcl

@@ -26,7 +26,7 @@ Result<int> whole(const Words &words, std::size_t place, const char *what) {
                                        words.size() > place ? printable(words[place]) : ""));
 }
 
-/// The words of an order that may end with the number of a spindle; without one it is the first.
+/// The words of an order that may end with the number of a spindle; without a number the first spindle.
 struct OfSpindle {
     Words order;
     int spindle = 0;
@@ -128,7 +128,7 @@ Text jog_increment(Shell &shell, const Words &words) {
     if (!wanted.has_value() || !distance.has_value()) {
         return wanted.has_value() ? Text(fail("a distance is a number")) : std::unexpected(wanted.error());
     }
-    // The sign of the speed is the direction, as in a jog without an end.
+    // The sign of the speed is the direction, as in a continuous jog.
     const double way = wanted->velocity < 0 ? -std::fabs(*distance) : std::fabs(*distance);
     return shell.send(
         messages::JogIncrement{wanted->of.isJoint, wanted->of.index, std::fabs(wanted->velocity), way});

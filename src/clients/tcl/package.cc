@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The shared library that Tcl shells load: the commands emc_* of the package Linuxcnc.
+// The shared library for Tcl shells: the commands emc_* of the package Linuxcnc.
 #include <tcl.h>
 
 #include <filesystem>
@@ -16,10 +16,10 @@
 namespace mw::tcl {
 namespace {
 
-/// Interval in which jogs are renewed while the program's events are served.
+/// Interval in which jogs are renewed while the program processes events.
 constexpr int RENEWAL_MS = 80;
 
-/// The state of an interpreter: nothing until emc_init.
+/// The state of an interpreter; empty before emc_init.
 struct Package {
     std::unique_ptr<Shell> shell;
     Tcl_TimerToken timer = nullptr;
@@ -79,7 +79,7 @@ int call(ClientData data, Tcl_Interp *tcl, int count, Tcl_Obj *const objects[]) 
                               : answer(tcl, fmt::format("{}: {}", row.name, result.error().str()), TCL_ERROR);
 }
 
-/// The INI file that the words name; empty: none.
+/// The INI file in the words; empty: none.
 std::string named_ini(const Words &words) {
     std::string path;
     for (std::size_t i = 0; i + 1 < words.size(); ++i) {
@@ -90,12 +90,12 @@ std::string named_ini(const Words &words) {
 
 Result<ini::IniFile> load_ini(const std::string &path) {
     diagnostics::Sink quiet(
-        [](const diagnostics::Diagnostic &) {});  // the machine has told what is wrong with it
+        [](const diagnostics::Diagnostic &) {});  // the machine has reported problems of the file
     std::error_code ignored;
     return ini::IniFile::load(std::filesystem::absolute(path, ignored).string(), quiet);
 }
 
-/// [EMC]NML_FILE, relative to the folder of the INI file; without one that of the environment.
+/// [EMC]NML_FILE, relative to the folder of the INI file; without this key the file of the environment.
 std::string nml_file(const ini::IniFile &ini) {
     const ini::IniEntry *const entry = ini.find("EMC", "NML_FILE");
     return entry == nullptr || entry->value.empty()
@@ -155,7 +155,7 @@ int init(ClientData data, Tcl_Interp *tcl, int count, Tcl_Obj *const objects[]) 
     return answer(tcl, "", TCL_OK);
 }
 
-/// A program that exits leaves the machine: what it jogs stops.
+/// When a program exits, it leaves the machine, and its jogs stop.
 void leave(ClientData data) {
     static_cast<Package *>(data)->shell.reset();
 }
@@ -181,7 +181,7 @@ extern "C" MW_EXPORT int Linuxcnc_Init(Tcl_Interp *tcl) {
     if (Tcl_PkgRequire(tcl, "Tcl", "8.6", 0) == nullptr) {
         return TCL_ERROR;
     }
-    auto *const package = new Package;  // the interpreter's, until it is deleted
+    auto *const package = new Package;  // owned by the interpreter until it is deleted
     Tcl_CallWhenDeleted(tcl, forget, package);
     Tcl_CreateExitHandler(leave, package);
     Tcl_CreateObjCommand(tcl, "emc_init", init, package, nullptr);

@@ -21,7 +21,7 @@ std::string number(double value) {
     return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
-/// From machine units to those that are shown: with AUTO those of the program.
+/// Converts machine units to the shown units; AUTO: the units of the program.
 double shown_length(const Shell &shell) {
     return rsh::length_factor(rsh::shown_unit(shell.own, shell.status()), shell.status());
 }
@@ -52,14 +52,14 @@ Result<std::size_t> joint(const Words &words) {
                                        words.empty() ? "" : printable(words[0]), MAX_JOINTS - 1));
 }
 
-/// An answer of linuxcncrsh in small letters.
+/// An answer of linuxcncrsh in lower case.
 template <class Name>
 Text lower(Shell &shell, const Name &question, const Words &words = {}) {
     auto text = shell.told(question, words);
     return text.has_value() ? Text(to_lower(*text)) : text;
 }
 
-/// linuxcncrsh returns all axes; this returns the one of the letter.
+/// linuxcncrsh returns all axes; this command returns the axis of the letter.
 Text relative(Shell &shell, const Words &words, const char *question) {
     const auto axis = letter(words);
     if (!axis.has_value()) {
@@ -109,7 +109,7 @@ Text last_number(Shell &shell, const Words &) {
 Text last_progress(Shell &shell, const Words &) {
     return std::to_string(progress_of(shell.status()));
 }
-/// Which command it was is not in the status.
+/// The status does not contain which command it was.
 Text last_kind(Shell &, const Words &) {
     return "0";
 }
@@ -121,7 +121,7 @@ Text next_line(Shell &shell, const Words &) {
 
 constexpr const char *LETTER = "letter";
 
-/// A row of the table of the status.
+/// A value from a row of the status table.
 template <std::size_t I>
 Text status_text(Shell &shell, const Words &words) {
     constexpr const auto &ROW = std::get<I>(legacy::STATUS);

@@ -70,7 +70,7 @@ Text ini_flag(Shell &shell, const Words &words) {
     return flag.has_value() ? Text(*flag ? "1" : "0") : no_value(words, *value, "yes or no");
 }
 
-/// An element of a list of Tcl: in braces, or with a backslash before each that would end it.
+/// An element of a Tcl list: in braces, or with a backslash before each special character.
 std::string element(const std::string &text) {
     int depth = 0;
     bool plain = text.find('\\') == std::string::npos;

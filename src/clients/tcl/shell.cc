@@ -77,7 +77,7 @@ Result<std::string> Shell::ask(const std::string &order, const Words &words) {
     }
     commander_.begin_order();
     auto waiting = found->ordering({settings_, view_, own, commander_, errors_, words, rest});
-    // A word that is not known is an error of the program; what the machine does not do now is an answer.
+    // An unknown word is an error of the program; a command that the machine rejects is an answer.
     return waiting.has_value() ? finish(std::move(*waiting)) : std::unexpected(waiting.error());
 }
 
@@ -116,7 +116,7 @@ Result<bool> Shell::isOver(const rsh::Waiting &waiting, bool untilDone) {
     return waiting.isOver && untilDone ? waiting.isOver(view_.status()) : true;
 }
 
-/// The status shows what was asked for once this is over.
+/// Waits until the status shows the result of the command.
 Result<std::string> Shell::finish(rsh::Waiting waiting) {
     const double end_s = own.timeout_s > 0 ? now_s() + own.timeout_s : 0;
     while (true) {

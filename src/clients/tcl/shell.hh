@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine as programs in Tcl see it: a client with the words that a program has set for itself. Knows no
-// Tcl.
+// The machine for Tcl programs: a client with the settings of a program. It does not use Tcl.
 #pragma once
 
 #include <deque>
@@ -23,34 +22,35 @@ using rsh::Words;
 /// One thread. Its questions and orders are those of linuxcncrsh, whose tables it uses.
 class Shell {
   public:
-    /// `viewer` and `joining`: of the machine. `ini` is its INI file.
+    /// `viewer` and `joining` are for the machine; `ini` is its INI file.
     Shell(client::Viewer viewer, rsh::Joining joining, ini::IniFile ini);
 
     const messages::MachineStatus &status() const { return own.kept != nullptr ? *own.kept : view_.status(); }
-    /// Takes the status as it is now; with `isUpdating` off only this does.
+    /// Reads the current status; with `isUpdating` off the status changes only here.
     Result<> update();
-    /// Before a question.
+    /// Called before a question.
     Result<> look();
 
-    /// The words behind the name of an answer of GET.
+    /// The words after the name in an answer of GET.
     Result<std::string> told(const std::string &question, const Words &words = {});
-    /// SET; an empty text, or the reason of the rejection: that is an answer, not an error of the program.
+    /// SET; returns an empty text, or the reason of the rejection, which is an answer and not an error of the
+    /// program.
     Result<std::string> ask(const std::string &order, const Words &words = {});
     Result<std::string> send(const messages::Command &command);
     Result<std::string> jog(const rsh::JogTarget &target, double velocity);
     Result<std::string> stop_jog(const rsh::JogTarget &target);
-    /// Renews what is jogged; often while isJogging().
+    /// Renews jogs; call it often while isJogging().
     void keep_jogging();
     bool isJogging() const { return commander_.isJogging(); }
 
-    /// For the last thing that was asked; "timeout" when it is over before.
+    /// Waits for the last command; "timeout" when the time expires first.
     Result<std::string> wait(bool untilDone);
-    /// Nothing: none is there.
+    /// Nothing if there is none.
     std::optional<std::string> next_line(messages::MessageKind kind);
     bool isMachineAlive() const { return view_.isMachineAlive(); }
 
     const ini::IniFile &ini() const { return *ini_; }
-    /// Another file for emc_ini.
+    /// Sets another file for emc_ini.
     void set_ini(ini::IniFile ini);
     rsh::OwnState own;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Time that a message of 200 bytes takes through a buffer: median and 99.9th percentile of each access, in
+// Time of a message of 200 bytes through a buffer: median and 99.9th percentile of each access, in
 // nanoseconds.
 #include <signal.h>
 #include <sys/prctl.h>
@@ -42,7 +42,7 @@ void tell(benchmark::State &state, const char *what, std::vector<std::int64_t> &
     state.counters[std::string(what) + "_p99.9_ns"] = static_cast<double>(times[times.size() * 999 / 1000]);
 }
 
-/// Writes and reads in this process; with `isShared` another process reads all the time too.
+/// Writes and reads in this process. With `isShared` another process also reads continuously.
 void measure(benchmark::State &state, const std::string &options, bool shared) {
     const Config config = perf_config(options);
     LocalPlaces local;

@@ -14,11 +14,11 @@
 namespace mw::nml {
 namespace {
 
-/// As many as the mailbox takes from one client in a cycle.
+/// Maximum number of commands that the mailbox takes from one client in a cycle.
 constexpr int COMMANDS_PER_STEP = mailbox::MAX_POSTED;
-/// Commands that were sent before.
+/// Maximum number of commands sent before the start.
 constexpr int MOST_OLD_COMMANDS = 1000000;
-/// Lines for the operator that wait for room; the oldest are lost first.
+/// Maximum number of lines for the operator that wait for space; the oldest lines are lost first.
 constexpr std::size_t MAX_LINES = 256;
 
 CommandState state_of(messages::Progress progress) {
@@ -34,7 +34,7 @@ CommandState state_of(messages::Progress progress) {
 template <class Text>
 Result<WriteNumber> write_line(Channel &channel, std::uint64_t number, const std::string &text) {
     CommandMessage<Text> line{{number}, {text.substr(0, messages::MAX_TEXT)}};
-    return channel.write(view(line), AT_ONCE);  // a reader may hold the lock: the next step tries again
+    return channel.write(view(line), AT_ONCE);  // a reader may hold the lock, so the next step tries again
 }
 
 Result<WriteNumber> write_line(Channel &channel, messages::MessageKind kind, std::uint64_t number,
@@ -125,7 +125,7 @@ void Bridge::add(std::vector<messages::Command> commands) {
     std::move(commands.begin(), commands.end(), std::back_inserter(own_));
 }
 
-/// A stop always has a place in the mailbox.
+/// The mailbox always has space for a stop.
 void Bridge::post_own() {
     if (emptied_) {
         for (const messages::Command &command : std::exchange(own_, {})) {
@@ -154,7 +154,7 @@ Result<> Bridge::take_commands() {
     return {};
 }
 
-/// Nothing when there is none, or none that a machine may get.
+/// The next command; nothing when there is none, or none that a machine may execute.
 Result<std::optional<Bridge::Held>> Bridge::next_command() {
     for (int i = 0; i < COMMANDS_PER_STEP; ++i) {
         Received received;
@@ -303,7 +303,7 @@ void Bridge::keep_message(messages::MessageKind kind, std::uint64_t number, cons
     lines_.push_back({kind, number, text});
 }
 
-/// A full queue is no error: there may be no reader.
+/// Writes messages for the operator. A full queue is not an error, because there may be no reader.
 Result<> Bridge::tell_messages() {
     if (lost_lines_ > 0 &&
         write_line(errors_, messages::MessageKind::OPERATOR_TEXT, 0,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A channel of messages: a buffer of the configuration, local or remote, with the codec of its encoding.
+// A channel of messages: a local or remote buffer of the configuration, with the codec of its encoding.
 #pragma once
 
 #include <memory>
@@ -11,35 +11,36 @@
 
 namespace mw::nml {
 
-/// What a program connects to channels with; all must outlive them.
+/// Objects with which a program connects to channels; all must outlive the channels.
 struct Connections {
     const Config &config;
-    std::string process;  ///< which P lines it goes by
+    std::string process;  ///< name of the process in P lines
     std::string instance;
     const Vocabulary &vocabulary;
     LocalPlaces &local;
 };
 
-/// One thread. Waits as the process's line says: timeout.
+/// One thread. Waits as set by the timeout in the line of the process.
 class Channel {
   public:
     static Result<Channel> open(const Connections &connections, const std::string &buffer);
 
-    /// The number of the write. Of a buffer with the option `serial` it is the command's serial number.
+    /// Writes a message and returns the number of the write. For a buffer with the option `serial` this is
+    /// the command's serial number.
     Result<WriteNumber> write(const MessageView &message) { return write(message, timeout_); }
     Result<WriteNumber> write(const MessageView &message, Timeout timeout);
-    /// The next message that was not read yet; nothing when there is none. Bytes that are no message are an
-    /// error, and are taken out.
+    /// The next unread message; nothing when there is none. Bytes that are not a message are removed and
+    /// returned as an error.
     Result<std::optional<Message>> read();
-    /// The message that is there, read or not.
+    /// The current message, also if it was read.
     Result<std::optional<Message>> peek();
-    /// read(), sleeping for a message at most so long.
+    /// As read(), but sleeps for a message, at most this long.
     Result<std::optional<Message>> wait(Timeout timeout);
 
-    /// The bytes of the next message, for a reader that decodes them itself. False: there is none.
+    /// The bytes of the next message, for a reader that decodes them. False: there is no message.
     Result<bool> receive(Received &received) { return buffer_->read(received, timeout_); }
     const Codec &codec() const { return codec_; }
-    /// The buffer gives commands their serial numbers.
+    /// True if the buffer assigns serial numbers to commands.
     bool isNumbered() const { return isNumbered_; }
     Buffer &buffer() { return *buffer_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A connection to a buffer of messages, wherever the buffer is (F1, F5).
+// A connection to a local or remote buffer of messages (F1, F5).
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace mw::nml {
 
-/// Which number a write has among all writes to its buffer, from 1.
+/// Number of a write among all writes to its buffer, from 1.
 using WriteNumber = std::uint64_t;
 
 struct Received {
@@ -21,15 +21,15 @@ struct Received {
     WriteNumber number = 0;
 };
 
-/// What one process has done with a buffer that is diagnosed.
+/// Statistics of one process for a buffer with diagnostics.
 struct AccessFigures {
     std::int32_t pid = 0;
     std::uint64_t writes = 0;
-    std::uint64_t reads = 0;  ///< that brought a message
+    std::uint64_t reads = 0;  ///< reads that returned a message
     std::uint64_t bytes_written = 0;
     std::uint64_t bytes_read = 0;
     std::int64_t last_access_ns = 0;   ///< CLOCK_MONOTONIC
-    std::int64_t longest_wait_ns = 0;  ///< for others who used the buffer
+    std::int64_t longest_wait_ns = 0;  ///< maximum wait for other users of the buffer
 };
 
 struct Rights {
@@ -37,9 +37,9 @@ struct Rights {
     bool mayWrite = true;
 };
 
-/// One thread. An access may wait for other users of the buffer and for free space in a queue; wait() alone
-/// waits for a message. An error states what to do, or that the time is over. After an error
-/// the connection is as good as before, unless the error says that the buffer is gone.
+/// One thread. An access may wait for other users of the buffer and for free space in a queue; only wait()
+/// waits for a message. An error states what to do, or that the timeout has expired. The connection is usable
+/// after an error, unless the error reports that the buffer no longer exists.
 class Buffer {
   public:
     Buffer(std::string name, Rights rights) : name_(std::move(name)), rights_(rights) {}
@@ -50,18 +50,18 @@ class Buffer {
     const std::string &name() const { return name_; }
     Rights rights() const { return rights_; }
 
-    /// Puts a message in place of the one before; into a queue behind all others.
+    /// Replaces the previous message; a queue appends the message.
     Result<WriteNumber> write(std::string_view bytes, Timeout timeout);
-    /// The message that this connection has not read; of a queue the oldest, which is taken out. False: there
-    /// is none.
+    /// The message that this connection has not read. From a queue the oldest message is removed. False:
+    /// there is no message.
     Result<bool> read(Received &message, Timeout timeout);
-    /// The message, read or not; of a queue the oldest, which stays. False: there is none.
+    /// The message, also if it was read. The oldest message remains in a queue. False: there is no message.
     Result<bool> peek(Received &message, Timeout timeout);
-    /// read(), sleeping until there is a message. False: the time was over first.
+    /// As read(), but sleeps until there is a message. False after the timeout.
     Result<bool> wait(Received &message, Timeout timeout);
     /// Removes all messages.
     Result<> clear(Timeout timeout);
-    /// Empty unless the buffer is diagnosed.
+    /// Empty if the buffer has no diagnostics.
     virtual Result<std::vector<AccessFigures>> figures() { return std::vector<AccessFigures>{}; }
 
   protected:

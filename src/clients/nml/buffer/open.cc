@@ -11,13 +11,13 @@
 namespace mw::nml {
 namespace {
 
-/// Interval in which a sleeper checks that the owner of the memory is alive.
+/// Interval at which a sleeping process checks that the owner of the memory is alive.
 constexpr std::int64_t LONGEST_SLEEP_NS = 100000000;
-/// Writes that may interrupt a reader before it takes the lock.
+/// Number of writes that may interrupt a reader before it takes the lock.
 constexpr int PATIENCE = 32;
 constexpr const char *TIME_OVER = "the time is over";
 
-/// Takes everything and gives nothing.
+/// Accepts all messages and returns none.
 class Phantom final : public Buffer {
   public:
     using Buffer::Buffer;
@@ -50,7 +50,7 @@ class MemoryBuffer final : public Buffer {
           isBlockingAllowed_(settings.isBlockingAllowed()), isDiagnosed_(settings.diagnosed) {}
     ~MemoryBuffer() override { leave(); }
 
-    /// Takes a place among those who may use the buffer.
+    /// Takes a slot for a process that uses the buffer.
     Result<> join() {
         const auto lock = locked(Deadline({1.0}));
         if (!lock.has_value()) {
@@ -84,7 +84,7 @@ class MemoryBuffer final : public Buffer {
     }
 
     Result<std::vector<AccessFigures>> figures() override {
-        constexpr int PID_SHIFT = 42;  // as mailbox::owner_word() has it
+        constexpr int PID_SHIFT = 42;  // as in mailbox::owner_word()
         std::vector<AccessFigures> all;
         for (const Seat &seat : store().seats()) {
             if (isDiagnosed_ && seat.owner.load() != 0) {
@@ -97,7 +97,7 @@ class MemoryBuffer final : public Buffer {
     }
 
   private:
-    /// Gives the lock back at the end of its block.
+    /// Releases the lock at the end of its block.
     class Held {
       public:
         explicit Held(SharedLock *lock) : lock_(lock) {}
@@ -151,7 +151,7 @@ class MemoryBuffer final : public Buffer {
         accesses.fetch_add(1, std::memory_order_relaxed);
         bytes.fetch_add(size, std::memory_order_relaxed);
         seat_->last_access_ns.store(now_ns, std::memory_order_relaxed);
-        // One thread for a connection; of several connections of a process a longer wait may be missed.
+        // A connection has one thread; with several connections in a process a longer wait may be missed.
         if (now_ns - begin_ns > seat_->longest_wait_ns.load(std::memory_order_relaxed)) {
             seat_->longest_wait_ns.store(now_ns - begin_ns, std::memory_order_relaxed);
         }
@@ -200,7 +200,7 @@ class MemoryBuffer final : public Buffer {
         return bad("something else has written to its memory", "end all processes that use it");
     }
 
-    /// False: there is nothing.
+    /// False: there is no message.
     Result<bool> get(Received &message, WriteNumber seen, bool taken, const Deadline &deadline) {
         const std::int64_t begin_ns = isDiagnosed_ ? monotonic_ns() : 0;
         for (int tries = 0;; ++tries) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Makes connections to the buffers that a configuration names.
+// Creates connections to the buffers of a configuration.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,8 @@
 
 namespace mw::nml {
 
-/// Local buffers. `local` must outlive the connection. The connection has the rights of the process line.
-/// Errors: GLOBMEM, what cannot be made or found, more processes than max_procs.
+/// Local buffers. `local` must outlive the connection, which has the rights of the process line. Errors:
+/// GLOBMEM, memory that cannot be created or found, more processes than max_procs.
 Result<std::unique_ptr<Buffer>> open_buffer(const BufferSettings &buffer, const ProcessSettings &process,
                                             const std::string &instance, LocalPlaces &local);
 

@@ -35,7 +35,7 @@ std::unexpected<Error> no_lock(const BufferSettings &buffer) {
 
 constexpr const char *NEEDS_MASTER = "a process whose P line says master=1 must be started before";
 
-/// 64-byte aligned, as mapped memory is.
+/// 64-byte aligned, as mapped memory.
 struct alignas(64) Line {
     std::array<std::byte, 64> bytes{};
 };
@@ -59,7 +59,7 @@ class SharedPlace final : public Place {
     runtime::SharedMemory memory_;
 };
 
-/// Header before the store in a file, by which its shape is checked.
+/// Header before the store in a file, to check its layout.
 struct alignas(64) FileHead {
     std::array<char, 8> mark{'M', 'W', 'N', 'M', 'L', 'b', 'u', 'f'};
     std::uint64_t version = ABI_VERSION;
@@ -85,7 +85,7 @@ class MappedFile {
     std::size_t size_;
 };
 
-/// Closed at the end, which also opens the file's lock.
+/// Closes a descriptor at its end, which also releases the file's lock.
 class Descriptor {
   public:
     explicit Descriptor(int fd) : fd_(fd) {}
@@ -95,7 +95,7 @@ class Descriptor {
     int get() const { return fd_; }
     void close() {
         if (fd_ >= 0) {
-            ::flock(fd_, LOCK_UN);  // a mapping keeps the file, and its lock, open
+            ::flock(fd_, LOCK_UN);  // a mapping keeps the file and its lock open
             ::close(std::exchange(fd_, -1));
         }
     }
@@ -156,7 +156,7 @@ Result<std::shared_ptr<Place>> open_shared_place(const BufferSettings &buffer, c
     if (is_master && !place->store.initialise()) {
         return no_lock(buffer);
     }
-    // Acquire: pairs with the release of the process that made it.
+    // Acquire: pairs with the release of the process that created it.
     if (place->store.head().isReady.load(std::memory_order_acquire) == 0 || !place->isKept()) {
         return bad(buffer, "the process that creates it has not finished, or has ended", "try again");
     }
@@ -172,7 +172,8 @@ Result<std::shared_ptr<Place>> open_file_place(const BufferSettings &buffer, boo
     Descriptor file(
         ::open(buffer.file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | (is_master ? O_CREAT : 0), 0600));
     struct stat status{};
-    // One process at a time looks whether the file is whole and in use, until it can be seen to use it.
+    // Only one process at a time checks whether the file is complete and in use, until it is itself visible
+    // as a user.
     if (file.get() < 0 || ::flock(file.get(), LOCK_EX) != 0 || ::fstat(file.get(), &status) != 0) {
         return bad(buffer, fmt::format("{}: {}", buffer.file, std::strerror(errno)),
                    is_master ? "" : NEEDS_MASTER);
@@ -199,7 +200,7 @@ Result<std::shared_ptr<Place>> open_file_place(const BufferSettings &buffer, boo
         return bad(buffer, fmt::format("{} is not a file of this buffer", buffer.file), "remove it");
     }
     auto place = std::make_shared<FilePlace>(shape, std::move(mapped), std::move(file));
-    // A lock does not outlive the computer's last start: the first process makes it again.
+    // A lock is not valid after a restart of the computer, so the first process creates it again.
     if (!isUsed(place->store) && !place->store.initialise()) {
         return no_lock(buffer);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where the memory of a buffer lies: shared, in this process, or in a file.
+// The memory of a buffer: shared, in this process, or in a file.
 #pragma once
 
 #include <map>
@@ -12,25 +12,25 @@
 
 namespace mw::nml {
 
-/// Keeps the memory as long as it is used.
+/// Keeps the memory while it is used.
 class Place {
   public:
     Place(const StoreShape &shape, void *memory) : store(memory, shape) {}
     Place(const Place &) = delete;
     Place &operator=(const Place &) = delete;
     virtual ~Place() = default;
-    /// Its owner is alive, or it needs none.
+    /// True if its owner is alive, or it needs no owner.
     virtual bool isKept() const { return true; }
-    /// Others now know the process that has opened it.
+    /// Called when other processes know the process that has opened it.
     virtual void settle() {}
 
     Store store;
 };
 
-/// Buffers of kind LOCMEM, by name: one for a process. Any thread.
+/// Buffers of type LOCMEM by name, one per process. Any thread.
 class LocalPlaces {
   public:
-    /// The master makes it; others find it while it is in use.
+    /// The master creates the memory; other users find it while it is in use.
     Result<std::shared_ptr<Place>> open(const BufferSettings &buffer, bool isMaster);
 
   private:
@@ -38,12 +38,12 @@ class LocalPlaces {
     std::map<std::string, std::weak_ptr<Place>> places_;
 };
 
-/// Memory that this user's processes share, by the instance of the machine and the buffer's key. The master
-/// makes it and takes it away.
+/// Memory shared by this user's processes, identified by the instance of the machine and the buffer's key.
+/// The master creates and removes it.
 Result<std::shared_ptr<Place>> open_shared_place(const BufferSettings &buffer, const std::string &instance,
                                                  bool isMaster);
 
-/// A file, which keeps the last message, and a queue, when it is not in use.
+/// A file, which keeps the last message or the queue while it is not in use.
 Result<std::shared_ptr<Place>> open_file_place(const BufferSettings &buffer, bool isMaster);
 
 }  // namespace mw::nml

@@ -16,7 +16,7 @@ namespace mw::nml {
 namespace {
 
 constexpr std::int64_t NS_PER_S = 1000000000;
-/// Longer waits are as good as for ever.
+/// Longer waits are treated as infinite.
 constexpr double LONGEST_S = 1e8;
 
 timespec timespec_of(std::int64_t ns) {
@@ -64,7 +64,8 @@ SharedLock::Outcome SharedLock::take(const Deadline &deadline) {
             result = ::pthread_mutex_clocklock(&mutex_, CLOCK_MONOTONIC, &end);
         }
     }
-    if (result == EOWNERDEAD) {  // what it guards is changed by single stores only: always whole
+    // data under the lock change only by single stores, so they are always complete
+    if (result == EOWNERDEAD) {
         result = ::pthread_mutex_consistent(&mutex_);
     }
     return result == 0                              ? Outcome::TAKEN
@@ -77,8 +78,8 @@ void SharedLock::release() {
 }
 
 void Bell::ring() {
-    // Sequentially consistent, as the counting of sleepers: either the ringer sees the sleeper or the sleeper
-    // the ring.
+    // Sequentially consistent with the count of sleepers: either the ringing process sees the sleeper, or the
+    // sleeper sees the ring.
     rings_.fetch_add(1, std::memory_order_seq_cst);
     if (sleepers_.load(std::memory_order_seq_cst) > 0) {
         ::syscall(SYS_futex, &rings_, FUTEX_WAKE, std::numeric_limits<int>::max(), nullptr, nullptr, 0);
@@ -88,7 +89,7 @@ void Bell::ring() {
 void Bell::sleep(std::uint32_t heard, std::int64_t longest_ns) {
     sleepers_.fetch_add(1, std::memory_order_seq_cst);
     const timespec longest = timespec_of(longest_ns);
-    // The kernel compares again: a ring between our look and our sleep is not missed.
+    // The kernel compares the value again, so a ring between the check and the sleep is not missed.
     if (rings_.load(std::memory_order_seq_cst) == heard) {
         ::syscall(SYS_futex, &rings_, FUTEX_WAIT, heard, &longest, nullptr, 0);
     }

@@ -13,7 +13,7 @@ namespace mw::nml {
 
 std::int64_t monotonic_ns();
 
-/// The end of a wait that begins now. [CLOCK_MONOTONIC]
+/// The end of a wait that starts now. [CLOCK_MONOTONIC]
 class Deadline {
   public:
     explicit Deadline(Timeout timeout);
@@ -27,12 +27,13 @@ class Deadline {
     std::int64_t end_ns_ = 0;
 };
 
-/// The kernel releases it when its holder dies: the next process finds what the holder had finished.
+/// The kernel releases the lock when its holder dies; the next process finds the completed changes of the
+/// holder.
 class SharedLock {
   public:
     enum class Outcome { TAKEN, TIME_OVER, BROKEN };
 
-    /// By the process that makes the memory, before others know of it.
+    /// Called by the process that creates the memory, before other processes know it.
     bool initialise();
     Outcome take(const Deadline &deadline);
     void release();
@@ -41,17 +42,17 @@ class SharedLock {
     pthread_mutex_t mutex_;
 };
 
-/// A futex at which others sleep. Zero is a bell that has not rung.
+/// A futex on which processes sleep. Zero is a bell that has not rung.
 class Bell {
   public:
     std::uint32_t heard() const { return rings_.load(std::memory_order_acquire); }
     void ring();
-    /// Sleeps until it has rung since `heard`, for at most `longest_ns`; may wake earlier.
+    /// Sleeps until the bell has rung since `heard`, for at most `longest_ns`; may return earlier.
     void sleep(std::uint32_t heard, std::int64_t longest_ns);
 
   private:
     std::atomic<std::uint32_t> rings_{0};
-    /// Those that may be asleep; one that was killed stays counted, which only costs a system call.
+    /// Number of processes that may sleep. A killed process remains counted, which only costs a system call.
     std::atomic<std::uint32_t> sleepers_{0};
 };
 

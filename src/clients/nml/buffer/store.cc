@@ -29,7 +29,7 @@ StoreShape StoreShape::of(const BufferSettings &buffer) {
     StoreShape shape;
     shape.is_queue = buffer.is_queue;
     shape.words = words_for(buffer.size);
-    // A second copy in any case: a writer that dies has not touched the one that counts.
+    // At least two copies, so that a writer that dies has not changed the valid one.
     shape.copies = buffer.is_queue              ? 1
                    : buffer.mutex == Mutex::MAO ? static_cast<std::size_t>(buffer.copies)
                                                 : 2;
@@ -60,7 +60,7 @@ Store::Store(void *memory, const StoreShape &shape)
 
 bool Store::initialise() {
     const bool is_good = head_->lock.initialise();
-    // Release: a process that sees it ready may use the lock.
+    // Release: a process that sees the store as ready may use the lock.
     head_->isReady.store(is_good ? 1 : 0, std::memory_order_release);
     return is_good;
 }
@@ -86,8 +86,8 @@ Store::Outcome Store::write_copy(std::string_view bytes, WriteNumber number) {
     }
     WordOf *to = copy(number);
     to[0].store(0, std::memory_order_relaxed);
-    // Release fence: a reader that sees any new word (after its acquire fence) also sees that the copy is no
-    // longer that of its number.
+    // Release fence: a reader that sees any new word (after its acquire fence) also sees that the copy has
+    // another number.
     std::atomic_thread_fence(std::memory_order_release);
     to[1].store(bytes.size(), std::memory_order_relaxed);
     for (std::size_t i = 0; i < count; ++i) {
@@ -96,7 +96,7 @@ Store::Outcome Store::write_copy(std::string_view bytes, WriteNumber number) {
         to[RECORD_HEAD + i].store(word, std::memory_order_relaxed);
     }
     to[0].store(number, std::memory_order_release);
-    // From here on it counts. Release: a reader that sees the number sees the copy.
+    // From here on the copy is valid. Release: a reader that sees the number sees the copy.
     head_->newest.store(number, std::memory_order_release);
     return Outcome::DONE;
 }
@@ -119,7 +119,7 @@ Store::Outcome Store::read_copy(Received &message, WriteNumber seen) const {
             std::memcpy(message.bytes.data() + i * WORD, &word, std::min<std::size_t>(WORD, size - i * WORD));
         }
     }
-    // Acquire fence: pairs with the writer's, so that the look below cannot pass on mixed words.
+    // Acquire fence: pairs with the writer's fence, so the check below cannot pass on mixed words.
     std::atomic_thread_fence(std::memory_order_acquire);
     if (from[0].load(std::memory_order_relaxed) != number) {
         return Outcome::AGAIN;
@@ -134,7 +134,7 @@ Store::Outcome Store::write_queue(std::string_view bytes, WriteNumber number) {
         return Outcome::TOO_LONG;
     }
     const std::uint64_t end = head_->end.load(std::memory_order_relaxed);
-    // Acquire: pairs with the reader's release; its words may be written over.
+    // Acquire: pairs with the reader's release; words that were read may be overwritten.
     const std::uint64_t used = end - head_->first.load(std::memory_order_acquire);
     if (used > shape_.words) {
         return Outcome::DAMAGED;
@@ -154,7 +154,7 @@ Store::Outcome Store::write_queue(std::string_view bytes, WriteNumber number) {
         next(word);
     }
     head_->newest.store(number, std::memory_order_relaxed);
-    // From here on it counts. Release: a reader that sees the end sees the words before it.
+    // From here on the message is valid. Release: a reader that sees the end sees the words before it.
     head_->end.store(end + need, std::memory_order_release);
     return Outcome::DONE;
 }
@@ -182,7 +182,7 @@ Store::Outcome Store::read_queue(Received &message, bool taken) {
         std::memcpy(message.bytes.data() + i * WORD, &word, std::min<std::size_t>(WORD, size - i * WORD));
     }
     if (taken) {
-        // Release: pairs with the writer's acquire, which writes over what was read.
+        // Release: pairs with the writer's acquire; the writer overwrites words that were read.
         head_->first.store(first + RECORD_HEAD + words_for(size), std::memory_order_release);
     }
     return Outcome::DONE;

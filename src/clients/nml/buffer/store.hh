@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Layout of messages in the memory of a buffer. A process that is killed, at any instruction, leaves them
-// whole: each change takes effect with one store.
+// Layout of messages in the memory of a buffer. If a process is killed at any instruction, the messages
+// remain complete, because each change takes effect with one store.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 
 namespace mw::nml {
 
-/// What a process that uses the buffer has there.
+/// Entry of a process that uses the buffer.
 struct Seat {
     std::atomic<std::uint64_t> owner{0};  ///< mailbox::owner_word(), 0: free
     std::atomic<std::uint32_t> connections{0};
@@ -22,22 +22,22 @@ struct Seat {
     std::atomic<std::int64_t> last_access_ns{0}, longest_wait_ns{0};
 };
 
-/// The beginning of the memory.
+/// The header at the start of the memory.
 struct StoreHead {
     SharedLock lock;
     std::atomic<std::uint32_t> isReady{0};
-    Bell message_bell;                      ///< something was written
-    Bell room_bell;                         ///< something was taken out of a queue
+    Bell message_bell;                      ///< rung after a write
+    Bell room_bell;                         ///< rung after a message was removed from a queue
     std::atomic<std::uint64_t> newest{0};   ///< number of the last write
-    std::atomic<std::uint64_t> cleared{0};  ///< of the last one that was cleared away
-    std::atomic<std::uint64_t> first{0};    ///< of a queue: words taken out since the start
-    std::atomic<std::uint64_t> end{0};      ///< words put in
+    std::atomic<std::uint64_t> cleared{0};  ///< number of the last write that was cleared
+    std::atomic<std::uint64_t> first{0};    ///< queue: words removed since the start
+    std::atomic<std::uint64_t> end{0};      ///< queue: words added since the start
 };
 
-/// How much of what there is.
+/// Size of the parts of a store.
 struct StoreShape {
     bool is_queue = false;
-    std::size_t words = 0;  ///< of a copy, or of the queue
+    std::size_t words = 0;  ///< words of a copy, or of the queue
     std::size_t copies = 1;
     std::size_t seats = 1;
 
@@ -46,35 +46,36 @@ struct StoreShape {
     std::uint64_t hash() const;
 };
 
-/// Does not lock: callers keep writers apart, and readers of a queue. Reading a store that is no queue needs
-/// no lock.
+/// Does not lock: callers exclude concurrent writers, and concurrent readers of a queue. A store that is not
+/// a queue can be read without a lock.
 class Store {
   public:
     enum class Outcome {
         DONE,
         NOTHING,   ///< there is no message
-        AGAIN,     ///< a write came between
-        NO_ROOM,   ///< in the queue, now
-        TOO_LONG,  ///< for the buffer, ever
-        DAMAGED,   ///< the memory was written to by something else
+        AGAIN,     ///< there was a write during the read
+        NO_ROOM,   ///< no space in the queue now
+        TOO_LONG,  ///< too long for the buffer
+        DAMAGED,   ///< other data were written to the memory
     };
 
     Store() = default;
     Store(void *memory, const StoreShape &shape);
 
-    /// Zeroed memory becomes an empty store.
+    /// Makes an empty store from zeroed memory.
     bool initialise();
     StoreHead &head() const { return *head_; }
     std::span<Seat> seats() const;
 
     Outcome write(std::string_view bytes, WriteNumber &number);
-    /// Of a queue the oldest, else the newest after `seen`. `isTaken`: out of the queue.
+    /// The oldest message of a queue, else the newest message after `seen`. `isTaken` removes the message
+    /// from a queue.
     Outcome read(Received &message, WriteNumber seen, bool isTaken);
     void clear();
 
   private:
     using WordOf = std::atomic<std::uint64_t>;
-    static constexpr std::size_t RECORD_HEAD = 2;  ///< words: number and size
+    static constexpr std::size_t RECORD_HEAD = 2;  ///< number of words for number and size
 
     WordOf *copy(std::uint64_t number) const;
     Outcome write_copy(std::string_view bytes, WriteNumber number);

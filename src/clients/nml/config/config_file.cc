@@ -27,11 +27,11 @@ std::vector<Word> words_of(std::string_view line, SourcePlace place) {
     return words;
 }
 
-/// Reads the fields of a line, then its options; false when something was wrong, which has been told.
+/// Reads the fields of a line, then its options; false if there was an error, which has been reported.
 template <class Line>
 bool read_line(const std::vector<Word> &words, const LineForm<Line> &form, Line &line,
                diagnostics::Sink &sink) {
-    const std::size_t given = words.size() - 1;  // the first word is the letter
+    const std::size_t given = words.size() - 1;  // the first word is the letter of the line
     line.place = words[0].place;
     if (given < form.fields.size()) {
         SourcePlace end = words.back().place;
@@ -60,7 +60,7 @@ std::string place_text(const SourcePlace &place) {
     return fmt::format("line {}", place.line);
 }
 
-/// Errors of this line because of other lines.
+/// Errors of this line that depend on other lines.
 bool check_buffer(const BufferSettings &buffer, const Config &config, diagnostics::Sink &sink) {
     for (const BufferSettings &other : config.buffers) {
         if (other.name == buffer.name) {
@@ -103,7 +103,7 @@ void tell_what_differs(const BufferSettings &buffer, diagnostics::Sink &sink) {
     }
 }
 
-/// Checks lines that name a buffer: all buffers are known by now.
+/// Checks lines that name a buffer, after all buffers are known.
 void check_processes(Config &config, diagnostics::Sink &sink) {
     std::vector<ProcessSettings> kept;
     for (ProcessSettings &process : config.processes) {

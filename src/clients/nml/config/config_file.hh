@@ -11,13 +11,12 @@
 
 namespace mw::nml {
 
-/// Every line that says something wrong is an error with file, line, column and the name of the field, and is
-/// left out. Warnings: unknown options, lines about buffers that there are none of, what this system does
-/// otherwise.
+/// Reports each wrong line as an error with file, line, column and field, and omits it. Warnings: unknown
+/// options, lines about buffers that do not exist, settings with a different effect on this system.
 Config parse_config(std::string_view text, const std::string &file, diagnostics::Sink &sink);
 
-/// Files that its lines name are looked for in its folder. An error when the file cannot be read or a line of
-/// it is wrong; the sink has been told each.
+/// Files named in its lines are searched in its folder. An error when the file cannot be read or a line is
+/// wrong; the sink receives each problem.
 Result<Config> load_config(const std::string &path, diagnostics::Sink &sink);
 
 }  // namespace mw::nml

@@ -111,7 +111,7 @@ constexpr std::array BUFFER_FIELDS{
     LineField<B>{"size",
                  [](std::string_view word, B &line) { return whole_number(word, 1, MAX_SIZE, line.size); }},
     LineField<B>{"neut", [](std::string_view word, B &line) { return yes_or_no(word, line.neutral); }},
-    // Only a place holder: files of old have all sorts of things there.
+    // Only a placeholder: old files contain different values here.
     LineField<B>{"RPC#",
                  [](std::string_view word, B &line) {
                      return whole_number(word, -MAX_NUMBER, MAX_NUMBER, line.rpc_number);
@@ -157,7 +157,7 @@ Result<> encode_as(Encoding encoding, B &line) {
     return {};
 }
 
-/// Alone it means two copies.
+/// Without a value it means two copies.
 Result<> split(std::string_view value, B &line) {
     return value.empty() ? Result<>{} : whole_number(value, 2, MAX_COPIES, line.copies);
 }

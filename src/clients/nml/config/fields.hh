@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The fields and options that lines of an NML configuration may have: a row for each.
+// The fields and options of lines in an NML configuration: one row for each.
 #pragma once
 
 #include <span>
@@ -18,7 +18,7 @@ struct Word {
     SourcePlace place;
 };
 
-/// A field has a place in the line; its words are read into the line's settings.
+/// A field has a fixed position in the line; its words are stored in the line's settings.
 template <class Line>
 struct LineField {
     const char *name;
@@ -52,7 +52,8 @@ struct LineForm {
 const LineForm<BufferSettings> &buffer_form();
 const LineForm<ProcessSettings> &process_form();
 
-/// False when its value is wrong, which has been told; an unknown one is a warning with the nearest name.
+/// False if its value is wrong, which has been reported. An unknown option is a warning with the most similar
+/// name.
 bool read_option(const Word &word, const LineForm<BufferSettings> &form, BufferSettings &buffer,
                  diagnostics::Sink &sink);
 /// Process lines have no options.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Raw and XDR: numbers as bytes.
 //
-//   number(4)  shape(4)  bytes of what follows(4)   fields
+//   number(4)  shape(4)  bytes after this head(4)   fields
 //
-// Raw: each number in its own width as this processor keeps it; a text or list begins with its length (4).
-// XDR (RFC 4506): big endian; numbers of up to 4 bytes take 4, others 8; texts are filled up to a multiple
+// Raw: each number in its own width in the format of this processor; a text or list begins with its length
+// (4). XDR (RFC 4506): big endian; numbers of up to 4 bytes take 4, others 8; texts are padded to a multiple
 // of 4.
 #pragma once
 
@@ -87,7 +87,7 @@ class BinaryWriter final : public Format {
     std::size_t start_;
 };
 
-/// Takes from the front of bytes that stay where they are.
+/// Reads from the front of bytes, which are not moved.
 template <class Bytes>
 class BinaryReader final : public Format {
   public:
@@ -146,7 +146,7 @@ class BinaryReader final : public Format {
     }
     bool count(const Value &, std::uint32_t &count) override {
         std::uint64_t number = 0;
-        if (!take(number, 4) || number > bytes_.size()) {  // each entry has a byte at least
+        if (!take(number, 4) || number > bytes_.size()) {  // each entry has at least one byte
             return cut();
         }
         count = static_cast<std::uint32_t>(number);

@@ -63,7 +63,7 @@ Result<const MessageKind *> read_kind(Format &format, const Vocabulary &vocabula
     return kind;
 }
 
-/// Fields of a message that is rejected in any case are not read.
+/// For a message that is rejected in any case the fields are not read.
 Result<> update_all(Format &format, const MessageKind &kind, const MessageView &message) {
     auto status = update(format, message.head);
     if (format.isReading() && kind.rejection != nullptr) {

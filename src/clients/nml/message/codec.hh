@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Messages to and from bytes in one of the encodings (F6).
+// Converts messages to and from bytes in one of the encodings (F6).
 #pragma once
 
 #include <string>
@@ -11,25 +11,25 @@
 
 namespace mw::nml {
 
-/// Any thread. The vocabulary must outlive it and what it decodes.
+/// Any thread. The vocabulary must outlive the codec and decoded messages.
 class Codec {
   public:
     Codec(const Vocabulary &vocabulary, Encoding encoding) : vocabulary_(&vocabulary), encoding_(encoding) {}
 
     Encoding encoding() const { return encoding_; }
 
-    /// Appends to `bytes`; on an error they are as before. The message is of the vocabulary, with the head of
-    /// its base class.
+    /// Appends the message to `bytes`, which are unchanged after an error. The message is of the vocabulary,
+    /// with the head of its base class.
     Result<> encode(const MessageView &message, std::string &bytes) const;
 
-    /// Which message the bytes begin with; an error when the vocabulary has none such or declares it
-    /// otherwise.
+    /// Type of the message at the start of the bytes. An error if the vocabulary does not have it or declares
+    /// it differently.
     Result<const MessageKind *> kind_of(std::string_view bytes) const;
-    /// Reads exactly one message of this kind. Every length is checked against the bytes and the declaration
-    /// before memory is taken. Ranges are not checked (messages::check). On an error the message is partly
-    /// written.
+    /// Reads exactly one message of this type. Every length is checked against the bytes and the declaration
+    /// before memory is allocated. Ranges are not checked (messages::check). After an error the message may
+    /// be partly written.
     Result<> decode(std::string_view bytes, const MessageView &message) const;
-    /// A message of any kind.
+    /// Decodes a message of any type.
     Result<Message> decode(std::string_view bytes) const;
 
   private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What update functions see of an encoding: one visitor that puts values into bytes or takes them out, in the
-// same order.
+// The interface of an encoding for update functions: one visitor that writes values to bytes or reads them in
+// the same order.
 #pragma once
 
 #include <cstdint>
@@ -15,35 +15,36 @@ namespace mw::nml {
 /// The frame before every message.
 struct FrameHead {
     int number = 0;
-    /// Of names and types of all fields: two programs that declare a message otherwise notice it.
+    /// Hash of the names and types of all fields, so that two programs with different declarations of a
+    /// message detect this.
     std::uint32_t shape = 0;
     std::string_view name;
 };
 
-/// A value and its place in the message.
+/// A value and its position in the message.
 struct Value {
     const messages::Field &field;
-    std::size_t index;  ///< of a series
+    std::size_t index;  ///< index in an array or list
 };
 
-/// Each function returns false when the bytes do not have what is asked for; problem() says why.
+/// Each function returns false if the bytes do not have the requested value; problem() returns the reason.
 class Format {
   public:
     virtual ~Format() = default;
-    /// Values are taken out of bytes.
+    /// True if values are read from bytes.
     virtual bool isReading() const = 0;
-    /// A form without a number for the shape leaves it 0.
+    /// An encoding without a shape leaves it 0.
     virtual bool head(FrameHead &head) = 0;
     virtual bool integer(const Value &value, std::int64_t &number) = 0;
     virtual bool real(const Value &value, double &number) = 0;
-    /// Of at most `longest` bytes. What was read stays until the next call.
+    /// A text of at most `longest` bytes. A text that was read is valid until the next call.
     virtual bool text(const Value &value, std::string_view &text, std::size_t longest) = 0;
-    /// Entries of a list.
+    /// Number of entries of a list.
     virtual bool count(const Value &value, std::uint32_t &count) = 0;
-    /// Between them come the values of a struct within the message.
+    /// The calls between enter and leave are for the values of a struct within the message.
     virtual void enter(const Value &) {}
     virtual void leave() {}
-    /// Of the message. What is read must be at its end.
+    /// End of the message; when reading there must be no further bytes.
     virtual bool end() = 0;
 
     const std::string &problem() const { return problem_; }
@@ -58,11 +59,11 @@ class Format {
     std::string problem_;
 };
 
-/// Shows every field to the format, in the order of its declaration; on reading they get the values. An error
-/// names message and field.
+/// Passes every field to the format, in the order of its declaration; when reading, the fields receive the
+/// values. An error names message and field.
 Result<> update(Format &format, const messages::Object &message);
 
-/// For FrameHead.
+/// Shape for FrameHead.
 std::uint32_t shape_of(const messages::Declaration &head, const messages::Declaration &body);
 
 }  // namespace mw::nml

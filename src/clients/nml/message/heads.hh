@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The base classes of NML messages (F5): the fields that precede those of every command and every status.
+// The base classes of NML messages (F5): the fields before those of every command and every status.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace mw::nml {
 
-/// State of a command. Numbers as clients written for LinuxCNC compare them.
+/// State of a command. The numbers are those that LinuxCNC's clients compare.
 enum class CommandState : std::uint8_t { UNKNOWN = 0, DONE = 1, EXECUTING = 2, ERROR = 3 };
 
-/// Which base class a message has.
+/// Base class of a message.
 enum class Base : std::uint8_t { PLAIN, COMMAND, STATUS };
 constexpr const char *name_of(Base base) {
     return base == Base::COMMAND ? "command" : base == Base::STATUS ? "status" : "message";
@@ -25,24 +25,24 @@ struct CommandHead {
     std::uint64_t serial_number = 0;
 };
 
-/// How one command of the channel ended, or that it is being executed.
+/// Result of one command of the channel, or that it is being executed.
 struct CommandOutcome {
     std::uint64_t serial_number = 0;  ///< 0: none
     CommandState state = CommandState::UNKNOWN;
-    messages::FixedText<255> reason;  ///< of ERROR
+    messages::FixedText<255> reason;  ///< reason for ERROR
 };
-/// Commands whose outcome a status reports: several clients write to one channel.
+/// Number of commands whose outcome a status reports, because several clients write to one channel.
 inline constexpr std::size_t RECENT_COMMANDS = 16;
 
 struct StatusHead {
     int command_type = 0;
     std::uint64_t echo_serial_number = 0;
     CommandState state = CommandState::UNKNOWN;
-    messages::FixedText<255> reason;  ///< of ERROR
+    messages::FixedText<255> reason;  ///< reason for ERROR
     std::array<CommandOutcome, RECENT_COMMANDS> recent{};
 };
 
-/// A message of a type known when the program is compiled.
+/// A message of a type that is known at compile time.
 template <class Body>
 struct PlainMessage {
     PlainHead head;

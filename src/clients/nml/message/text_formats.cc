@@ -14,7 +14,7 @@ namespace mw::nml {
 namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
-/// Behind the name of a list: how many entries follow.
+/// Suffix of a list's name for its number of entries.
 constexpr std::string_view COUNT = ".count";
 
 std::string path_text(const std::vector<std::string> &path, const Value &value) {
@@ -47,7 +47,7 @@ int hex_digit(char c) {
     return at == std::string_view::npos ? -1 : static_cast<int>(at);
 }
 
-/// False when it is no text as messages::quoted() writes it.
+/// False if the text is not in the form of messages::quoted().
 bool unquote(std::string_view text, std::string &plain) {
     plain.clear();
     if (text.size() < 2 || text.front() != '"' || text.back() != '"') {
@@ -268,7 +268,7 @@ bool TextReader::count(const Value &value, std::uint32_t &count) {
         return false;
     }
     const auto read = parse_uint(text);
-    if (!read.has_value() || *read > bytes_.size()) {  // each entry has a byte at least
+    if (!read.has_value() || *read > bytes_.size()) {  // each entry has at least one byte
         return refuse("the message ends within it");
     }
     count = static_cast<std::uint32_t>(*read);

@@ -4,9 +4,9 @@
 //   ascii:    number,shape,value,value,...\n
 //   display:  NAME number\n  then name=value\n for each, "joints[2].pos_cmd=1.5"; enumerations by name
 //
-// A real number is the shortest text that reads back as the same, or inf, -inf, nan. Texts are in quotes;
-// in them
-// \" \\ and \xHH. Bytes above 7f stay as they are.
+// A real number is the shortest text that reads back as the same number, or inf, -inf, nan. Texts are in
+// quotes and may contain
+// \" \\ and \xHH. Bytes above 7f are unchanged.
 #pragma once
 
 #include <vector>
@@ -55,7 +55,7 @@ class TextReader final : public Format {
   private:
     bool take(const Value &value, std::string_view &text);
     bool take_name(const std::string &name);
-    /// A value, up to where it ends; texts with their quotes.
+    /// A value up to its end; texts with their quotes.
     bool take_value(std::string_view &text);
 
     TextStyle style_;

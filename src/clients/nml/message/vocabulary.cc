@@ -14,7 +14,7 @@
 namespace mw::nml {
 namespace {
 
-/// The table and the declarations are checked by separate tests: adding them cannot fail.
+/// Separate tests check the table and the declarations, so adding them cannot fail.
 template <class Body>
 void add_other(Vocabulary &vocabulary, Base base) {
     const int number = messages::DECLARATION<Body>.number;

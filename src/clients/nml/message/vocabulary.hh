@@ -13,7 +13,7 @@
 
 namespace mw::nml {
 
-/// A message in parts, wherever they are kept. The parts are changed by reading only.
+/// References to the parts of a message. Only reading changes the parts.
 struct MessageView {
     messages::Object head;
     messages::Object body;
@@ -27,21 +27,22 @@ MessageView view(Typed<Body> &message) {
     return view(message.head, message.body);
 }
 
-/// What a vocabulary knows about one kind of message.
+/// Data of one type of message in a vocabulary.
 struct MessageKind {
     int number = 0;
     const char *wire_name = "";  ///< LinuxCNC's name, or empty
     const messages::Declaration *declaration = nullptr;
     Base base = Base::PLAIN;
     std::uint32_t shape = 0;
-    std::shared_ptr<void> (*make)() = nullptr;  ///< the body with its default values
-    /// The machine's command for a body. Null: the machine has none.
+    std::shared_ptr<void> (*make)() = nullptr;  ///< creates the body with its default values
+    /// Converts a body to the machine's command. Null: the machine has no such command.
     messages::Command (*convert)(const void *body) = nullptr;
-    /// Why the machine rejects the message; its fields are not read. Null: it does not.
+    /// The reason why the machine rejects the message, whose fields are then not read. Null: it is not
+    /// rejected.
     const char *rejection = nullptr;
 
     const messages::Declaration *head() const;
-    /// LinuxCNC's name where it has one.
+    /// LinuxCNC's name, if it has one, else the declaration's name.
     const char *name() const { return *wire_name != '\0' ? wire_name : declaration->name; }
 };
 template <class Body>
@@ -53,7 +54,7 @@ messages::Command convert_body(const void *body) {
     return *static_cast<const Body *>(body);
 }
 
-/// A message of any kind.
+/// A message of any type.
 class Message {
   public:
     explicit Message(const MessageKind &kind);
@@ -61,10 +62,10 @@ class Message {
     const MessageKind &kind() const { return *kind_; }
     int number() const { return kind_->number; }
     MessageView view();
-    /// The machine's command; an error with the reason when it has none.
+    /// The machine's command; an error with the reason if it has none.
     Result<messages::Command> command() const;
 
-    /// Null when it is of another kind.
+    /// Null if the message is of another type.
     template <class Body>
     Body *get() {
         return kind_->declaration == &messages::DECLARATION<Body> ? static_cast<Body *>(body_.get())
@@ -81,12 +82,12 @@ class Message {
 
 class Vocabulary {
   public:
-    /// LinuxCNC's messages (wire_table.hh), and every other command and numbered status of
+    /// LinuxCNC's messages (wire_table.hh), and all other commands and numbered statuses of
     /// src/messages/declarations.
     static Vocabulary standard();
 
-    /// An error when it has no number, or when number or name are taken. Texts show `wire_name` instead
-    /// of the name of the declaration.
+    /// An error if the message has no number, or its number or name is in use. Texts contain `wire_name`
+    /// instead of the name of the declaration.
     template <class Body>
     Result<> add(Base base, const char *wire_name = "") {
         MessageKind kind;
@@ -99,7 +100,7 @@ class Vocabulary {
     }
     Result<> add(MessageKind kind);
 
-    /// Null when there is none. Kinds stay where they are as long as the vocabulary does.
+    /// Null if there is none. The address of a type is valid as long as the vocabulary.
     const MessageKind *find(int number) const;
     const MessageKind *find(std::string_view name) const;
     Result<Message> make(int number) const;

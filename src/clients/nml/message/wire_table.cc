@@ -31,7 +31,7 @@ namespace {
 
 using namespace messages;  // NOLINT(google-build-using-namespace): the table lists most of its names
 
-/// A message without fields, or one whose fields are not read.
+/// A message without fields, or whose fields are not read.
 struct NoFields {};
 
 template <class Body>
@@ -64,7 +64,7 @@ consteval MessageKind status(int number, const char *name) {
     return same_number<Body>(number, name, Base::STATUS);
 }
 
-/// A second name of a command of the machine.
+/// Another name for a command of the machine.
 using Convert = Command (*)(const void *);
 consteval MessageKind same_as(int number, const char *name, Convert convert) {
     MessageKind made = kind<NoFields>(number, name, Base::COMMAND, nullptr);
@@ -251,7 +251,7 @@ constexpr auto ROWS = std::to_array<MessageKind>({
     status<MachineStatus>(1999, "EMC_STAT_TYPE"),
 });
 
-/// Declarations of the rows that have none.
+/// Declarations for rows without fields.
 constexpr auto WITHOUT_FIELDS = [] {
     std::array<Declaration, ROWS.size()> all{};
     std::transform(ROWS.begin(), ROWS.end(), all.begin(), [](const MessageKind &row) {

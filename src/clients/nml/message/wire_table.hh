@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The messages of LinuxCNC's NML vocabulary: number and name on the wire, and the command of the machine or
-// the reason why it rejects the message (F8).
+// The messages of LinuxCNC's NML vocabulary: number and name on the wire, and the machine's command or the
+// reason why it rejects the message (F8).
 #pragma once
 
 #include <span>
@@ -11,10 +11,11 @@
 
 namespace mw::nml {
 
-/// In the order of their numbers.
+/// All rows in the order of their numbers.
 std::span<const MessageKind> wire_messages();
 
-/// "EMC_TASK_SET_STATE_TYPE" of SetState. The declaration's own name if LinuxCNC has no such message.
+/// For instance "EMC_TASK_SET_STATE_TYPE" for SetState. The declaration's own name if LinuxCNC has no such
+/// message.
 std::string_view wire_name(const messages::Declaration &declaration);
 
 /// docs/reference/nml_messages.md.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which connection jogs what, so that a jog ends when its connection does.
+// Stores which connection jogs which joint or axis, so that a jog ends with its connection.
 #pragma once
 
 #include <map>
@@ -14,11 +14,11 @@ namespace mw::nml {
 /// Continuous jogs of all connections of a server. Any thread.
 class JogOwners {
   public:
-    /// `connection` has sent the command; one that is no jog changes nothing.
+    /// Called when `connection` has sent the command; other commands than jogs have no effect.
     void note(const void *connection, const messages::Command &command);
-    /// The connection has ended.
+    /// Called when the connection has ended.
     void leave(const void *connection);
-    /// What is to be stopped since the last call, because its connection has ended.
+    /// Stops for jogs whose connection has ended since the last call.
     std::vector<messages::Command> take();
 
   private:

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What goes over the network between a buffer's server and its clients: a head of 32 bytes, big endian, then
-// bytes.
+// Protocol between a buffer's server and its clients: a head of 32 bytes, big endian, then bytes.
 //
 //   'M' 'W' 'N' version(1)   operation(1) status(1) 0 0   buffer#(4)   request(4)
-//   number(8)   time in milliseconds(4)   bytes that follow(4)
+//   number(8)   time in milliseconds(4)   number of bytes after the head(4)
 #pragma once
 
 #include <array>
@@ -17,10 +16,10 @@ namespace mw::nml {
 
 enum class Operation : std::uint8_t {
     LOGIN = 1,  ///< bytes: name, a zero byte, password
-    WRITE = 2,  ///< the answer's number is that of the write
-    READ = 3,   ///< number: of the message that was read last
+    WRITE = 2,  ///< the answer contains the number of the write
+    READ = 3,   ///< number: that of the last message read
     PEEK = 4,
-    WAIT = 5,  ///< as READ; answered when there is a message, or when the time is over
+    WAIT = 5,  ///< as READ; answered when there is a message, or after the time limit
     CLEAR = 6,
 };
 
@@ -28,16 +27,16 @@ enum class Status : std::uint8_t {
     REQUEST = 0,
     DONE = 1,
     NOTHING = 2,  ///< there is no message
-    REFUSED = 3,  ///< bytes: why
+    REFUSED = 3,  ///< bytes: the reason
 };
 
 struct Packet {
     Operation operation = Operation::PEEK;
     Status status = Status::REQUEST;
     std::uint32_t buffer = 0;
-    std::uint32_t request = 0;  ///< an answer has that of its request
+    std::uint32_t request = 0;  ///< an answer has the number of its request
     std::uint64_t number = 0;
-    std::int32_t time_ms = 0;  ///< how long the access may wait; below 0: for ever
+    std::int32_t time_ms = 0;  ///< maximum wait of the access; below 0: no limit
     std::string bytes;
 };
 
@@ -45,10 +44,10 @@ inline constexpr std::size_t PACKET_HEAD = 32;
 inline constexpr std::size_t MAX_PACKET_BYTES = 64UL << 20U;
 using PacketHead = std::array<char, PACKET_HEAD>;
 
-/// Head and bytes.
+/// Head and bytes as sent.
 std::string to_wire(const Packet &packet);
 
-/// What the head says; `size` bytes follow. An error when it is no head of this version.
+/// Reads the head; `size` bytes follow it. An error if it is not a head of this version.
 Result<Packet> read_packet_head(std::string_view head, std::size_t &size);
 
 }  // namespace mw::nml

@@ -14,11 +14,11 @@
 namespace mw::nml {
 namespace {
 
-/// Time of the network and a busy server in addition to the time of the access.
+/// Time for the network and a busy server, in addition to the time of the access.
 constexpr double PATIENCE_S = 5.0;
-/// A datagram is sent again when no answer has come within it.
+/// A datagram is sent again if there is no answer within this time.
 constexpr double DATAGRAM_PATIENCE_S = 0.2;
-/// Interval of requests for a message over UDP, where the server does not wait.
+/// Interval of requests for a message over UDP, because the server does not wait.
 constexpr std::int64_t ASK_AGAIN_NS = 10000000;
 constexpr std::size_t MAX_DATAGRAM = 65507;
 
@@ -75,7 +75,7 @@ class RemoteBuffer final : public Buffer {
         auto answer = transport_ == Transport::TCP ? exchange_stream(request, deadline)
                                                    : exchange_datagrams(request, deadline);
         if (!answer.has_value()) {
-            socket_.close();  // an answer that comes late must not be taken for that to another request
+            socket_.close();  // a late answer must not be treated as the answer to another request
             const bool is_change = operation == Operation::WRITE || operation == Operation::CLEAR;
             return bad(answer.error().message,
                        is_change ? "whether it was carried out is not known" : "is its server running?");
@@ -97,7 +97,7 @@ class RemoteBuffer final : public Buffer {
             return received.has_value() ? fail("its server has closed the connection")
                                         : std::unexpected(received.error());
         }
-        // A server that does not understand a request cannot say which.
+        // A server that does not understand a request cannot name it.
         const bool ours = answer.request == request.request || answer.status == Status::REFUSED;
         return ours ? Result<Packet>(std::move(answer)) : fail("its server answers something else");
     }

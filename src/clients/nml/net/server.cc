@@ -14,13 +14,13 @@
 namespace mw::nml {
 namespace {
 
-/// Interval of the check whether the server ends.
+/// Interval of checks whether the server must end.
 constexpr int LOOK_MS = 50;
-/// A client must send and take the whole of a message within it.
+/// Maximum time in which a client must send and receive a complete message.
 constexpr Timeout MESSAGE_TIME{10.0};
-/// In addition to the largest message: space for a name and password.
+/// Space for a name and password, in addition to the largest message.
 constexpr std::size_t EXTRA_BYTES = 1024;
-/// Clients over UDP whose last answer is remembered.
+/// Number of UDP clients whose last answer is stored.
 constexpr std::size_t MAX_DATAGRAM_CLIENTS = 64;
 constexpr std::size_t MAX_DATAGRAM = 65507;
 
@@ -29,7 +29,7 @@ bool isReadable(int fd) {
     return ::poll(&one, 1, LOOK_MS) > 0;
 }
 
-/// Requests of one address, so that a repeated request is executed once.
+/// Requests of one address, stored so that a repeated request is executed only once.
 struct DatagramClient {
     std::unique_ptr<Session> session;
     std::uint32_t last_request = 0;
@@ -58,7 +58,7 @@ Result<std::unique_ptr<Server>> Server::start(const Config &config, const std::s
             places.emplace(buffer.host, *buffer.udp_port, Transport::UDP);
         }
         ServedBuffer served{buffer, *line, {}};
-        served.process.isMaster = false;  // the connections of clients make no memory
+        served.process.isMaster = false;  // connections of clients do not create memory
         if (!buffer.password_file.empty()) {
             auto passwords = Passwords::load(buffer.password_file);
             if (!passwords.has_value()) {
@@ -149,7 +149,8 @@ void Server::take_client(Listener &listener) {
         const Packet full{
             Operation::PEEK, Status::REFUSED, 0, 0, 0, 0, "the server has as many clients as it can have"};
         static_cast<void>(
-            client.send_packet(full, Deadline(AT_ONCE)));  // a client that misses it sees a closed connection
+            // a client that misses this packet sees a closed connection
+            client.send_packet(full, Deadline(AT_ONCE)));
         return;
     }
     Worker &worker = listener.workers.emplace_back(std::move(client));
@@ -169,12 +170,12 @@ void Server::serve(Worker &worker) {
         Packet request;
         const auto received = worker.socket.receive_packet(request, Deadline(MESSAGE_TIME), MESSAGE_TIME,
                                                            service_.longest + EXTRA_BYTES);
-        if (!received.has_value()) {  // what follows cannot be understood
+        if (!received.has_value()) {  // the following bytes cannot be understood
             const Packet answer{Operation::PEEK, Status::REFUSED, 0, 0, 0, 0, received.error().message};
             static_cast<void>(worker.socket.send_packet(answer, Deadline(MESSAGE_TIME)));
             break;
         }
-        // A client that has closed its connection has reported a failure. Its command must not move the
+        // A client that has closed its connection has reported a failure, so its command must not move the
         // machine later.
         if (!*received || worker.socket.isHungUp() ||
             !worker.socket.send_packet(session.answer(request, isOver), Deadline(MESSAGE_TIME)).has_value()) {
@@ -200,10 +201,10 @@ void Server::serve_datagrams(Listener &listener) {
         const std::string_view datagram(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
         auto request = read_packet_head(datagram, expected);
         if (!request.has_value() || expected != datagram.size() - PACKET_HEAD) {
-            continue;  // anybody may send anything: no answer to what is no request
+            continue;  // anybody may send anything, so data that are not a request receive no answer
         }
         request->bytes = datagram.substr(PACKET_HEAD);
-        request->time_ms = 0;  // one thread for all: no client may wait
+        request->time_ms = 0;  // there is one thread for all clients, so no client may wait
         DatagramClient &client = clients[std::string(reinterpret_cast<const char *>(&address), size)];
         client.used = ++count;
         const bool is_new = client.session == nullptr || request->request != client.last_request;
@@ -214,7 +215,8 @@ void Server::serve_datagrams(Listener &listener) {
             client.last_request = request->request;
             client.last_answer = to_wire(client.session->answer(*request, [] { return true; }));
         }
-        // One that is lost, or too large for a datagram, is asked for again, or told as the end of the time.
+        // A lost answer, or one that is too large for a datagram, is requested again or ends with the
+        // timeout.
         static_cast<void>(::sendto(listener.socket.fd(), client.last_answer.data(), client.last_answer.size(),
                                    0, reinterpret_cast<const sockaddr *>(&address), size));
         if (clients.size() > MAX_DATAGRAM_CLIENTS) {

@@ -15,26 +15,26 @@
 
 namespace mw::nml {
 
-/// Connections: a client has one for each buffer.
+/// Maximum number of connections; a client has one for each buffer.
 inline constexpr std::size_t MAX_SESSIONS = 128;
 
-/// Every buffer of the configuration for which the process's line says server=1, at the ports of its B line,
-/// at the address of its host there: "localhost" serves this computer alone. The buffers are opened by
-/// then: a process that is their master keeps them open by separate connections. Ends its threads when it
-/// is destroyed.
+/// Serves each buffer of the configuration whose process line has server=1, at the ports of its B line and
+/// the address of its host; "localhost" serves only this computer. The buffers must be open; if the process
+/// is their master, separate connections keep them open. The destructor ends its threads.
 class Server {
   public:
-    /// `vocabulary` and `local` must outlive it. An error when a port cannot be had.
+    /// `vocabulary` and `local` must outlive the server. An error if a port is not available.
     static Result<std::unique_ptr<Server>> start(const Config &config, const std::string &process,
                                                  const std::string &instance, const Vocabulary &vocabulary,
                                                  LocalPlaces &local);
     ~Server();
 
-    /// Where it listens; of a port 0 in the configuration the one that it got. 0: it does not.
+    /// The port at which it listens; for port 0 in the configuration the assigned port. 0: it does not
+    /// listen.
     int tcp_port() const;
     int udp_port() const;
-    /// Stops of jogs whose connection has ended since the last call. What the connection has written before
-    /// is in its buffer by then.
+    /// Stops of jogs whose connection has ended since the last call. Data that the connection has written
+    /// before are in the buffer.
     std::vector<messages::Command> take_left_jogs() { return jogs_.take(); }
 
   private:
@@ -50,7 +50,7 @@ class Server {
         Socket socket;
         Transport transport = Transport::TCP;
         int port = 0;
-        std::list<Worker> workers;  ///< of this thread
+        std::list<Worker> workers;  ///< used only by this thread
         std::thread thread;
     };
 

@@ -10,9 +10,10 @@
 namespace mw::nml {
 namespace {
 
-/// A server holds a request no longer: the client asks again, and knows that the server lives.
+/// Maximum wait of the server for a request. The client then asks again, which shows that the server is
+/// alive.
 constexpr double LONGEST_WAIT_S = 1.0;
-/// Interval of the check whether the client is connected.
+/// Interval of checks whether the client is still connected.
 constexpr double SLICE_S = 0.05;
 
 Timeout timeout_of(const Packet &request) {
@@ -137,7 +138,8 @@ Result<Packet> Session::read(const Packet &request, Open &open, const std::funct
         if (!found.has_value()) {
             return std::unexpected(found.error());
         }
-        // Each client says itself what it has read: several connections of one client are one reader.
+        // Each client sends the number of the last message read, so several connections of one client are one
+        // reader.
         if (*found && (is_peek || is_queue || message.number > request.number)) {
             return answer_to(request, Status::DONE, std::move(message.bytes), message.number);
         }

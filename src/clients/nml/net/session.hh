@@ -16,7 +16,7 @@
 
 namespace mw::nml {
 
-/// The encoding of a buffer's messages, wherever they are.
+/// The encoding of a buffer's messages, local or remote.
 Encoding encoding_of(const BufferSettings &buffer);
 
 struct ServedBuffer {
@@ -25,9 +25,9 @@ struct ServedBuffer {
     std::optional<Passwords> passwords;
 };
 
-/// What all sessions of a server share; it does not change while they run.
+/// Data shared by all sessions of a server, constant while they run.
 struct Service {
-    std::map<std::uint32_t, ServedBuffer> buffers;  ///< by number
+    std::map<std::uint32_t, ServedBuffer> buffers;  ///< served buffers by number
     const Vocabulary &vocabulary;
     std::string instance;
     LocalPlaces &local;
@@ -43,9 +43,9 @@ class Session {
     Session(const Session &) = delete;
     Session &operator=(const Session &) = delete;
 
-    /// The answer to a request. A wait ends early when `isOver` returns true.
+    /// Returns the answer to a request. A wait ends early when `isOver` returns true.
     Packet answer(const Packet &request, const std::function<bool()> &isOver);
-    /// A wrong password was given: the client is not heard any more.
+    /// True after a wrong password: further requests are not read.
     bool isBarred() const { return barred_; }
 
   private:

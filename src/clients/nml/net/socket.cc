@@ -24,7 +24,7 @@ std::unexpected<Error> bad(const std::string &what, int error = errno) {
     return fail(fmt::format("{}: {}", what, std::strerror(error)));
 }
 
-/// True when `events` have come, false when the time is over.
+/// True when `events` have occurred, false after the timeout.
 Result<bool> wait_for(int fd, short events, const Deadline &deadline) {
     for (;;) {
         pollfd one{fd, events, 0};
@@ -47,7 +47,7 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
-/// "localhost" is this computer's loopback, also without a hosts file (RFC 6761, 6.3).
+/// "localhost" is the loopback of this computer, also without a hosts file (RFC 6761, 6.3).
 Result<Addresses> find_addresses(const std::string &host, int port, Transport transport, bool listening) {
     addrinfo wanted{};
     wanted.ai_family = AF_UNSPEC;
@@ -70,7 +70,8 @@ Result<Socket> make_socket(const addrinfo &address) {
         return bad("socket");
     }
     const int on = 1;
-    // Small messages at once; a peer without power or cable is noticed, as jogs end with their connection.
+    // Sends small messages at once. Detects a peer without power or cable, because jogs end with their
+    // connection.
     constexpr int PROBE_S = 1, PROBES = 3;
     if (address.ai_socktype == SOCK_STREAM) {
         ::setsockopt(made.fd(), IPPROTO_TCP, TCP_KEEPIDLE, &PROBE_S, sizeof PROBE_S);

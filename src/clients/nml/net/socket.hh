@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Sockets whose every wait has an end.
+// Sockets on which every wait has a time limit.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace mw::nml {
 
-/// Owns a descriptor. Non-blocking inside.
+/// Owns a descriptor, which is non-blocking.
 class Socket {
   public:
     Socket() = default;
@@ -24,20 +24,20 @@ class Socket {
     int fd() const { return fd_; }
     bool isOpen() const { return fd_ >= 0; }
     void close();
-    /// Wakes a thread that waits for it.
+    /// Wakes a thread that waits on the socket.
     void shut_down() const;
 
     Result<> send(std::string_view bytes, const Deadline &deadline) const;
-    /// Exactly `size` bytes. False: the other side has closed it before the first of them.
+    /// Receives exactly `size` bytes. False: the peer has closed the connection before the first byte.
     Result<bool> receive(char *bytes, std::size_t size, const Deadline &deadline) const;
-    /// The bytes of one datagram, 0 when the time is over.
+    /// Size of one datagram; 0 after the timeout.
     Result<std::size_t> receive_datagram(char *bytes, std::size_t size, const Deadline &deadline) const;
-    /// The other side is gone.
+    /// True if the peer has disconnected.
     bool isHungUp() const;
 
     Result<> send_packet(const Packet &packet, const Deadline &deadline) const;
-    /// False: the other side has closed it. The first byte is waited for until `idle` ends, the others until
-    /// `deadline` seconds after it; a packet has at most `longest` bytes.
+    /// False: the peer has closed the connection. Waits for the first byte until `idle` ends, for the others
+    /// until `deadline` seconds after it; a packet has at most `longest` bytes.
     Result<bool> receive_packet(Packet &packet, const Deadline &idle, Timeout within,
                                 std::size_t longest) const;
 
@@ -47,9 +47,9 @@ class Socket {
 
 enum class Transport : std::uint8_t { TCP, UDP };
 
-/// A host by name or address. Errors name it.
+/// Connects to a host by name or address. Errors contain the host.
 Result<Socket> connect_to(const std::string &host, int port, Transport transport, const Deadline &deadline);
-/// Only this address of this computer is listened at. Port 0: any; `port` becomes the one that was given.
+/// Listens only at this address of this computer. Port 0: any port; `port` becomes the assigned port.
 Result<Socket> listen_at(const std::string &host, int &port, Transport transport);
 
 }  // namespace mw::nml

@@ -33,7 +33,7 @@ Result<Config> read_config(const std::string &path) {
     return config;
 }
 
-/// The three channels are of one machine.
+/// Checks that the three channels belong to one machine.
 Result<bool> is_remote(const Config &config, const std::string &path) {
     int count = 0, remote = 0;
     for (const char *const buffer : {COMMAND_CHANNEL, STATUS_CHANNEL, ERROR_CHANNEL}) {
@@ -63,7 +63,7 @@ class Connected {
         if (machine != nullptr && machine->check().has_value()) {
             return machine;
         }
-        // A client that compares serial numbers does not see them go back.
+        // Starts at the current number, so that serial numbers never decrease for a client.
         const mailbox::Serial serial = machine != nullptr ? machine->segment().serials.load() : 0;
         auto made = RemoteMachine::connect(std::move(config), CLIENT_PROCESS, serial);
         if (made.has_value()) {

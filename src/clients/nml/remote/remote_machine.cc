@@ -18,9 +18,9 @@ namespace {
 constexpr std::int64_t NS_PER_S = 1000000000;
 /// Time between two reads of the status.
 constexpr std::chrono::milliseconds PERIOD{10};
-/// A connection without a new status for so long is lost.
+/// A connection without a new status for this time counts as lost.
 constexpr std::int64_t STATUS_LIMIT_NS = 3 * NS_PER_S;
-/// Motion ends a jog that has not been renewed for so long.
+/// Motion ends a jog that is not renewed within this time.
 constexpr int LEASE_MS = 500;
 constexpr std::int64_t RENEWAL_NS = NS_PER_S / 10;
 constexpr int MESSAGES_PER_STEP = 16;
@@ -60,7 +60,7 @@ Result<std::shared_ptr<RemoteMachine>> RemoteMachine::connect(Config config, con
         return std::unexpected(std::move(error));
     }
     made->thread_ = std::thread([machine = made.get()] {
-        // Signals are for the threads of the program.
+        // Signals are handled by the threads of the program.
         sigset_t all;
         ::sigfillset(&all);
         ::pthread_sigmask(SIG_BLOCK, &all, nullptr);
@@ -105,7 +105,7 @@ Result<> RemoteMachine::open() {
 }
 
 Result<> RemoteMachine::wait_first_status() {
-    // The first one may be the last one of a machine that has ended: it stays in the buffer.
+    // The first status may be the last one of a machine that has ended, because it remains in the buffer.
     constexpr int LIVING = 2;
     const std::int64_t end_ns = now_ns() + STATUS_LIMIT_NS;
     for (int count = 0; true;) {
@@ -172,7 +172,7 @@ void RemoteMachine::run() {
         wake_.wait_for(lock, PERIOD, [this] { return is_posted_; });
         is_posted_ = false;
     }
-    if (!is_lost) {  // what clients have posted before they left
+    if (!is_lost) {  // sends commands that clients have posted before they left
         static_cast<void>(send_commands());
     }
 }
@@ -272,7 +272,7 @@ void RemoteMachine::follow(const StatusHead &head) {
                                         [number](const auto &one) { return one.serial_number == number; });
         return found == head.recent.end() ? nullptr : &*found;
     };
-    std::erase_if(jogs_, [&](const Jog &jog) {  // a limit, a stop or another client has ended it
+    std::erase_if(jogs_, [&](const Jog &jog) {  // a limit, a stop or another client has ended the jog
         const CommandOutcome *const renewal = jog.number != 0 ? find(jog.number) : nullptr;
         return renewal != nullptr && renewal->state == CommandState::ERROR;
     });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine on another computer, through its NML server: a mailbox in this process for the clients of this
-// process.
+// A machine on a remote computer, through its NML server. It has a mailbox in this process for the clients of
+// this process.
 #pragma once
 
 #include <atomic>
@@ -21,13 +21,13 @@
 
 namespace mw::nml {
 
-/// A thread sends the commands in their order, reads status, messages and tool table, and publishes them.
-/// An error ends the connection: commands that have not ended fail, nothing is sent again, and check()
-/// returns the reason.
+/// A thread sends the commands in their order, reads status, messages and tool table, and publishes them. An
+/// error ends the connection: commands that have not ended fail, nothing is repeated, and check() returns the
+/// reason.
 class RemoteMachine final : public client::MachineLink {
   public:
-    /// Waits until the machine sends status, at most as long as the time limits of the network. The serial
-    /// numbers of its clients begin after `serial`. An error: which host, what is wrong.
+    /// Waits for the status of the machine, at most for the time limits of the network. The serial numbers of
+    /// its clients begin after `serial`. An error names the host and the problem.
     static Result<std::shared_ptr<RemoteMachine>> connect(Config config, const std::string &process,
                                                           mailbox::Serial serial);
     ~RemoteMachine() override;
@@ -39,11 +39,12 @@ class RemoteMachine final : public client::MachineLink {
     Result<> check_tools() const override;
 
   private:
-    /// A continuous jog of a client that set no lease. It has one here: without the network it stops.
+    /// A continuous jog of a client that has not set a lease. It gets a lease here, so that it stops when the
+    /// network fails.
     struct Jog {
         messages::JogContinuous command;
         std::int64_t renewed_ns = 0;
-        WriteNumber number = 0;  ///< of the last renewal
+        WriteNumber number = 0;  ///< number of the last renewal
     };
 
     RemoteMachine(Config config, std::string process);
@@ -55,7 +56,7 @@ class RemoteMachine final : public client::MachineLink {
     Result<WriteNumber> send(messages::Command &command);
     Result<> send_renewals();
     void note_jog(messages::Command &command);
-    /// True: there was a newer status.
+    /// True if there was a newer status.
     Result<bool> read_status();
     void follow(const StatusHead &head);
     Result<> read_messages();
@@ -77,7 +78,7 @@ class RemoteMachine final : public client::MachineLink {
 
     std::atomic<bool> are_messages_requested_{false}, is_ending_{false};
     std::atomic<std::int64_t> status_ns_{0};  ///< time of the last status
-    mutable std::mutex mutex_;                ///< of the members below
+    mutable std::mutex mutex_;                ///< guards the members below
     std::condition_variable wake_;
     bool is_posted_ = false;
     std::optional<Error> lost_;

@@ -84,7 +84,8 @@ void MachineReader::pass_messages(TimeMs now) {
             pass(readings_.message(kind_name(message->kind), message->text, id), now);
         }
     }
-    // After the message: a kill in between passes it on again, with the same Id.
+    // Stored after the message is passed on. After a kill in between, the message is passed on again with the
+    // same id.
     if (mark_.number != before && keep_) {
         keep_(mark_);
     }

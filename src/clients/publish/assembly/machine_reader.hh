@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Reads the machine and passes on what has changed. It only looks: it has no way to command the machine.
+// Reads the machine and passes on changes. It cannot command the machine.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace mw::publish {
 
-/// One thread. A machine that is not there yet, or ends and starts again, is followed.
+/// One thread. Waits for a machine that is not running, and follows a restart.
 class MachineReader {
   public:
     /// The machine, while it runs.
@@ -24,10 +24,10 @@ class MachineReader {
         std::uint64_t run = 0, number = 0;
     };
 
-    /// `data` and `agent` take what is read; either may be null.
+    /// `data` and `agent` receive the values; either may be null.
     MachineReader(Attach attach, Deadbands deadbands, LiveData *data, mtconnect::Agent *agent)
         : attach_(std::move(attach)), readings_(std::move(deadbands)), data_(data), agent_(agent) {}
-    /// Messages up to `mark` were passed on before; `keep` takes each newer mark.
+    /// Messages up to `mark` were passed on before; `keep` stores each newer mark.
     void set_mark(const Mark &mark, std::function<void(const Mark &)> keep) {
         mark_ = mark;
         keep_ = std::move(keep);

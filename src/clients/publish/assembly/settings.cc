@@ -28,7 +28,7 @@ struct KeyName {
 template <KeyName NAME>
 inline constexpr const ini::IniKey &KEY = ini::row_of(PUBLISH_KEYS, SECTION, NAME.text);
 
-/// Reads the section; problems go to the sink.
+/// Reads the section and reports problems to the sink.
 class SectionReader {
   public:
     SectionReader(const ini::IniFile &file, const Surroundings &around, diagnostics::Sink &sink)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What [PUBLISH] of a machine's INI file sets.
+// The settings in [PUBLISH] of a machine's INI file.
 #pragma once
 
 #include <optional>
@@ -17,12 +17,12 @@ namespace mw::publish {
 
 struct AgentPort {
     int port = 0;
-    std::string address;  ///< empty: this computer only
+    std::string address;  ///< empty: only this computer
     std::vector<std::string> names;
 };
 
 struct Settings {
-    std::optional<LinkSettings> link;  ///< nothing: no broker
+    std::optional<LinkSettings> link;  ///< nothing: no connection to a broker
     NodeSettings node;
     std::string store;
     LogLimits store_limits;
@@ -32,15 +32,15 @@ struct Settings {
     mtconnect::AgentSettings agent;
 };
 
-/// What depends on this computer.
+/// Data about this computer.
 struct Surroundings {
-    std::string host;          ///< its name
+    std::string host;          ///< name of the computer
     std::string machine_id;    ///< unique
-    std::string state_folder;  ///< $XDG_STATE_HOME or ~/.local/state; empty: there is none
+    std::string state_folder;  ///< $XDG_STATE_HOME or ~/.local/state; empty: neither is set
 };
 Surroundings this_computer();
 
-/// Reports each problem with file, line and column; nothing when there are any.
+/// Reports each problem with file, line and column; returns nothing if there are problems.
 std::optional<Settings> read_settings(const ini::IniFile &file, const Surroundings &around,
                                       diagnostics::Sink &sink);
 

@@ -104,7 +104,7 @@ void Agent::set_tools(const messages::ToolTable &table, TimeMs now) {
     const std::lock_guard lock(mutex_);
     std::set<int> present;
     for (const messages::ToolRecord &tool : table.tools) {
-        // The first entry is the spindle, and repeats the tool that it has.
+        // The first entry is the spindle, which repeats its tool.
         if (tool.toolno <= 0 || !present.insert(tool.toolno).second) {
             continue;
         }
@@ -187,7 +187,7 @@ Agent::Outcome<std::optional<Filter>> Agent::filter(const Query &query) const {
 
 namespace {
 
-/// A whole number of a request between two ends, `preset` without it.
+/// A whole number in a request within a range; `preset` if it is missing.
 std::expected<std::int64_t, std::string> whole(const Query &query, const char *name, std::int64_t preset,
                                                std::int64_t low, std::int64_t high) {
     const auto found = query.find(name);
@@ -378,7 +378,7 @@ std::optional<std::string> Agent::next(Stream &stream, TimeMs now, double now_s)
     }
     const double waited_s = now_s - stream.sent_s;
     const bool isNew = stream.isCurrent || stream.next < observations_.next();
-    // Without news an empty document shows that the agent lives.
+    // If there is nothing new, an empty document shows that the agent is alive.
     if (stream.isEnded || waited_s < stream.interval_s || (!isNew && waited_s < stream.heartbeat_s)) {
         return std::nullopt;
     }
@@ -391,7 +391,7 @@ std::optional<std::string> Agent::next(Stream &stream, TimeMs now, double now_s)
     std::string document = sample_document(stream.filter, at, static_cast<std::int64_t>(stream.count), now);
     stream.next = at;
     const bool isEmpty = document.find("<ComponentStream") == std::string::npos;
-    if (isEmpty && !isHeartbeat) {  // all of it was of other items
+    if (isEmpty && !isHeartbeat) {  // all observations were of other items
         return std::nullopt;
     }
     stream.sent_s = now_s;

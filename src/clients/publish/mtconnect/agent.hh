@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// An agent of MTConnect: the machine's observations and tools, and its answers to requests. Knows no sockets.
+// An agent of MTConnect: the machine's observations and tools, and the answers to requests. It uses no
+// sockets.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +22,10 @@ struct AgentSettings {
     std::string device;  ///< name of the machine
     std::string uuid;
     std::string sender;           ///< name of this computer
-    std::size_t buffer = 131072;  ///< observations that are kept
+    std::size_t buffer = 131072;  ///< number of stored observations
 };
 
-/// A document and its status in HTTP.
+/// A document and its HTTP status.
 struct Answer {
     int status = 200;
     std::string body;
@@ -33,16 +34,16 @@ struct Answer {
 /// A stream of documents that a client has requested.
 struct Stream {
     std::optional<Filter> filter;  ///< nothing: all items
-    bool isCurrent = false;        ///< states instead of observations
+    bool isCurrent = false;        ///< sends states instead of observations
     Sequence next = 0;
-    std::size_t count = 0;  ///< observations in a document, at most
+    std::size_t count = 0;  ///< maximum number of observations in a document
     double interval_s = 0, heartbeat_s = 10;
     double sent_s = 0;           ///< time of the last document
-    std::uint64_t instance = 0;  ///< for which its sequence numbers hold
+    std::uint64_t instance = 0;  ///< instance for which its sequence numbers are valid
     bool isEnded = false;
 };
 
-/// Parameters of a request, decoded.
+/// Decoded parameters of a request.
 using Query = std::map<std::string, std::string>;
 
 /// Any thread.
@@ -52,22 +53,22 @@ class Agent {
 
     Agent(AgentSettings settings, TimeMs now);
 
-    // Of the thread that reads the machine.
+    // --- for the thread that reads the machine
 
-    /// The machine is there. Other metrics than before begin a new instance.
+    /// Called when the machine is running. Other metrics than before begin a new instance.
     void born(const std::vector<Metric> &metrics, const std::vector<Value> &values, double units_per_mm,
               TimeMs now);
     void add(const std::vector<Change> &changes, TimeMs now);
-    /// Nothing of the machine is known any more.
+    /// Called when no data of the machine is available.
     void gone(TimeMs now);
     void set_tools(const messages::ToolTable &table, TimeMs now);
 
-    // Of the thread of the clients.
+    // --- for the thread of the clients
 
-    /// A document, or a stream whose documents next() gives.
+    /// Returns a document, or a stream whose documents next() returns.
     std::variant<Answer, Stream> answer(const std::string &path, const Query &query, TimeMs now,
                                         double now_s) const;
-    /// The next document of a stream, when it is time for one; `now_s` never jumps.
+    /// The next document of a stream, when it is due; `now_s` is monotonic.
     std::optional<std::string> next(Stream &stream, TimeMs now, double now_s) const;
 
   private:
@@ -91,8 +92,8 @@ class Agent {
     Outcome<std::optional<Stream>> stream(const Query &query, double now_s) const;
     std::string current_document(const std::optional<Filter> &filter, std::optional<Sequence> at,
                                  TimeMs now) const;
-    /// From `from` on, `count` observations at most, backwards where it is negative; `from` becomes the next
-    /// one.
+    /// At most `count` observations beginning with `from`; backwards if `count` is negative. `from` becomes
+    /// the next one.
     std::string sample_document(const std::optional<Filter> &filter, Sequence &from, std::int64_t count,
                                 TimeMs now) const;
 
@@ -104,7 +105,7 @@ class Agent {
     std::uint64_t instance_;
     TimeMs model_changed_;
     double units_per_mm_ = 1;
-    std::vector<Asset> assets_;  ///< the newest first
+    std::vector<Asset> assets_;  ///< newest asset first
 };
 
 }  // namespace mw::publish::mtconnect

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The components of a machine and their data items, as a probe of MTConnect describes them.
+// The components of a machine and their data items, as described in a probe of MTConnect.
 #pragma once
 
 #include <optional>
@@ -20,22 +20,22 @@ struct DataItem {
     std::string id{};
     Category category = Category::EVENT;
     std::string type{}, sub_type{}, units{};
-    std::optional<std::size_t> metric{};  ///< whose value it has
+    std::optional<std::size_t> metric{};  ///< metric whose value the item has
     const Row *row = nullptr;
-    std::size_t component = 0;  ///< index among the components
+    std::size_t component = 0;  ///< index of the component
 
-    /// Of its observations: "PathFeedrate".
+    /// Name of the element of its observations: "PathFeedrate".
     std::string element() const;
 };
 
 struct ModelComponent {
     std::string element, id, name;
-    std::size_t parent = 0;  ///< index; the device is 0 and its own parent
+    std::size_t parent = 0;  ///< index of the parent; the device is 0 and its own parent
 };
 
 class DeviceModel {
   public:
-    /// Without metrics: a machine that was not seen yet.
+    /// Without metrics, for a machine that was not seen yet.
     DeviceModel(std::string name, std::string uuid, const std::vector<Metric> &metrics);
 
     const std::string &name() const { return name_; }
@@ -45,9 +45,9 @@ class DeviceModel {
     ItemId availability() const { return 0; }
     ItemId asset_changed() const { return 1; }
     ItemId asset_removed() const { return 2; }
-    /// The item of a metric.
+    /// The data item of a metric.
     std::optional<ItemId> item_of(std::size_t metric) const;
-    /// The element Device with everything in it.
+    /// The element Device with its content.
     std::string xml() const;
 
   private:
@@ -62,11 +62,11 @@ class DeviceModel {
     std::vector<DataItem> items_;
 };
 
-/// The data items that an XPath selects: those among its nodes, and those below them. Nothing when it is no
-/// valid XPath, or needs too many steps.
+/// The data items that an XPath selects: those among its nodes and below them. Nothing if the XPath is not
+/// valid or needs too many steps.
 std::optional<Filter> select(const DeviceModel &model, const std::string &path);
 
-/// `text` with the characters that XML reserves as entities.
+/// `text` with entities for the reserved characters of XML.
 std::string escaped(std::string_view text);
 
 }  // namespace mw::publish::mtconnect

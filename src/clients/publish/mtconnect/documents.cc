@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char *VERSION = "2.2";
 
-/// The root element with what it contains.
+/// The root element with its content.
 std::string document(const char *name, const std::string &content) {
     return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
                        "<MTConnect{0} xmlns=\"urn:mtconnect.org:MTConnect{0}:{1}\" "
@@ -22,7 +22,7 @@ std::string document(const char *name, const std::string &content) {
                        name, VERSION, content);
 }
 
-/// Without its end: documents add attributes.
+/// The header without its end, because documents add attributes.
 std::string header(const AgentFacts &facts, TimeMs now) {
     return fmt::format("<Header creationTime=\"{}\" sender=\"{}\" instanceId=\"{}\" version=\"{}.0.0\"",
                        time_text(now), escaped(facts.sender), facts.instance, VERSION);

@@ -12,12 +12,12 @@
 
 namespace mw::publish::mtconnect {
 
-/// What every document says about its agent.
+/// Data about the agent in every document.
 struct AgentFacts {
-    std::string sender;          ///< this computer
-    std::uint64_t instance = 1;  ///< another one after each start of the sequence numbers
+    std::string sender;          ///< name of this computer
+    std::uint64_t instance = 1;  ///< changes when the sequence numbers start again
     TimeMs model_changed = 0;
-    std::size_t buffer = 0;  ///< observations that are kept
+    std::size_t buffer = 0;  ///< number of stored observations
     std::size_t assets = 0, most_assets = 0;
 };
 
@@ -34,10 +34,10 @@ struct Asset {
 };
 
 std::string devices_document(const AgentFacts &facts, const DeviceModel &model, TimeMs now);
-/// Of observations in any order.
+/// Document of observations in any order.
 std::string streams_document(const AgentFacts &facts, const DeviceModel &model, const Span &span,
                              const std::vector<Observation> &observations, TimeMs now);
-/// Tools as assets CuttingTool. `units_per_mm`: machine units in a millimetre.
+/// Tools as assets CuttingTool. `units_per_mm`: machine units per millimetre.
 std::string assets_document(const AgentFacts &facts, const std::string &device_uuid,
                             const std::vector<Asset> &assets, double units_per_mm, TimeMs now);
 std::string error_document(const AgentFacts &facts, std::string_view code, std::string_view text, TimeMs now);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Values in the units and words of MTConnect.
+// Converts values to the units and words of MTConnect.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace mw::publish::mtconnect {
 
-/// UNAVAILABLE without a value. `units_per_mm`: machine units in a millimetre.
+/// UNAVAILABLE without a value. `units_per_mm`: machine units per millimetre.
 std::string value_text(const DataItem &item, const Value &value, double units_per_mm);
 
 /// "2026-11-30T10:20:30.125Z"

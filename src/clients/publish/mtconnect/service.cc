@@ -41,8 +41,8 @@ void Service::answer(const screen::Request &request, screen::Reply reply) {
 
 bool Service::tick() {
     for (Running &one : streams_) {
-        // A client that does not read fills its queue; the server closes its connection later. Nothing waits
-        // for it.
+        // A client that does not read fills its queue, and the server closes its connection later. Nothing
+        // waits for the client.
         const bool isFull = !one.pieces->hasRoom();
         const auto document =
             isFull ? std::nullopt : agent_.next(one.stream, clock_.utc_ms(), clock_.steady_s());

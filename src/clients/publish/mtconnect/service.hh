@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The agent behind the HTTP server of the screen.
+// Connects the agent to the HTTP server of the screen.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@
 
 namespace mw::publish::mtconnect {
 
-/// One thread, that of the server.
+/// For one thread, that of the server.
 class Service final : public screen::Application {
   public:
-    /// Time of the day, and one that never jumps.
+    /// Time of day, and a monotonic time.
     struct Clock {
         std::function<TimeMs()> utc_ms;
         std::function<double()> steady_s;
@@ -27,7 +27,7 @@ class Service final : public screen::Application {
     void received(screen::SessionId, std::string_view) override {}
     void closed(screen::SessionId) override {}
 
-    /// Sends what streams have to send. True while there are streams.
+    /// Sends due documents of streams. True while there are streams.
     bool tick();
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The only file that includes libxml2.
+// Implemented with libxml2, which only this file includes.
 #include <libxml/parser.h>
 #include <libxml/xpath.h>
 
@@ -11,7 +11,7 @@
 namespace mw::publish::mtconnect {
 namespace {
 
-/// Steps of an expression of a stranger.
+/// Maximum number of steps for an expression from a client.
 constexpr unsigned long MOST_STEPS = 200'000;
 constexpr std::size_t LONGEST_PATH = 1000;
 
@@ -53,7 +53,7 @@ std::optional<Filter> select(const DeviceModel &model, const std::string &path) 
     if (path.size() > LONGEST_PATH) {
         return std::nullopt;
     }
-    // Without a namespace: clients write element names of MTConnect without one.
+    // Without a namespace, because clients write element names of MTConnect without one.
     const std::string text = "<MTConnectDevices><Devices>" + model.xml() + "</Devices></MTConnectDevices>";
     const std::unique_ptr<xmlDoc, FreeDocument> document(
         xmlReadMemory(text.data(), static_cast<int>(text.size()), "probe.xml", nullptr, XML_PARSE_NONET));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A connection to an MQTT broker as the edge node uses it.
+// The interface of the edge node to an MQTT broker.
 #pragma once
 
 #include <optional>
@@ -16,13 +16,13 @@ struct Publication {
     bool isRetained = false;
 };
 
-// What a connection reports.
+// Events of a connection.
 struct Connected {};
-/// It is over, or could not be made.
+/// The connection has ended or could not be established.
 struct Disconnected {
     std::string reason;
 };
-/// The broker has processed everything that was sent before the barrier.
+/// The broker has processed everything sent before the barrier.
 struct BarrierPassed {
     int barrier = 0;
 };
@@ -36,18 +36,18 @@ class BrokerLink {
     BrokerLink &operator=(const BrokerLink &) = delete;
     virtual ~BrokerLink() = default;
 
-    /// Begins to connect, with a clean session, to a broker of the configured list.
+    /// Begins to connect to a broker of the configured list, with a clean session.
     virtual void connect(std::size_t broker, const Publication &will) = 0;
-    /// With QoS 1.
+    /// Subscribes with QoS 1.
     virtual void subscribe(const std::string &topic) = 0;
     virtual void publish(const Publication &message) = 0;
-    /// Number of the barrier.
+    /// Sends a barrier and returns its number.
     virtual int barrier() = 0;
-    /// Sends DISCONNECT after everything else.
+    /// Sends DISCONNECT after all other packets.
     virtual void disconnect() = 0;
-    /// Closes the connection without a word: the broker sends the will.
+    /// Closes the connection without DISCONNECT, so that the broker sends the will.
     virtual void drop() = 0;
-    /// The oldest report that was not read yet.
+    /// The oldest event that was not read yet.
     virtual std::optional<LinkEvent> next_event() = 0;
 };
 

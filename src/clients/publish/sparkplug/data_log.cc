@@ -25,7 +25,7 @@ namespace {
 constexpr std::string_view BEGINNING = "data-", END = ".log";
 constexpr std::size_t MOST_RECORD_BYTES = 1UL << 24U;
 
-/// Before each record in a file.
+/// Header of each record in a file.
 struct Head {
     std::uint32_t size = 0;
     std::uint32_t checksum = 0;
@@ -43,7 +43,7 @@ std::string name_of(RecordId first) {
     return fmt::format("{}{:020}{}", BEGINNING, first, END);
 }
 
-/// Of the file of confirmed records.
+/// Content of the file of confirmed records.
 struct Mark {
     RecordId id = 0;
     std::uint32_t checksum = 0;
@@ -159,7 +159,7 @@ Result<> DataLog::load_segment(const std::string &path, RecordId first) {
         ::unlink(path.c_str());
         return {};
     }
-    // Nothing is appended to a file of before: a torn end stays behind what counts.
+    // Nothing is appended to an older file, so a torn end remains after the valid records.
     next_ = std::max<RecordId>(next_, first + segment.starts.size());
     bytes_ += segment.bytes;
     segments_.push_back(std::move(segment));
@@ -185,7 +185,7 @@ void DataLog::load_confirmed() {
 bool DataLog::begin_segment(RecordId first) {
     if (file_ >= 0) {
         ::close(std::exchange(file_, -1));
-        if (segments_.back().starts.empty()) {  // a full disk has taken no record of it
+        if (segments_.back().starts.empty()) {  // the file has no record because the disk was full
             ::unlink(segments_.back().path.c_str());
             segments_.pop_back();
         }
@@ -314,7 +314,7 @@ void DataLog::confirm(RecordId end) {
     if (::pwrite(confirmed_file_, &mark, sizeof mark, 0) != static_cast<ssize_t>(sizeof mark)) {
         trouble_ = fmt::format("cannot write {}/confirmed: {}", folder_, reason());
     }
-    // The newest file stays: the next record belongs to it.
+    // The newest file is kept, because the next record belongs to it.
     while (segments_.size() > 1 && segments_[1].first <= confirmed_) {
         drop_front();
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Records on disk that are kept until they are confirmed: published values wait here while no broker takes
-// them.
+// Records on disk that are stored until they are confirmed. Published values wait here while no broker
+// accepts them.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,13 @@
 
 namespace mw::publish {
 
-/// Number of a record. Consecutive, never used again.
+/// Number of a record. Consecutive and never reused.
 using RecordId = std::uint64_t;
 
 struct LogLimits {
-    std::uint64_t bytes = 64UL << 20U;  ///< of all files; the oldest file is dropped when they exceed it
-    std::uint64_t segment_bytes = 1UL << 20U;  ///< of a file
+    std::uint64_t bytes = 64UL << 20U;  ///< total size of all files; the oldest file is dropped when it is
+                                        ///< exceeded
+    std::uint64_t segment_bytes = 1UL << 20U;  ///< size of one file
 };
 
 struct Record {
@@ -27,36 +28,36 @@ struct Record {
 };
 
 /// Files of records in a folder that one process uses at a time. A record is written by one call before
-/// append() returns: a process that is killed loses none. After a power cut the log ends before the first
+/// append() returns, so a killed process loses no record. After a power cut the log ends before the first
 /// damaged record. One thread at a time.
 class DataLog {
   public:
-    /// Creates the folder where it is missing.
+    /// Opens the log; creates the folder if it is missing.
     static Result<DataLog> open(const std::string &folder, const LogLimits &limits = {});
     DataLog(DataLog &&other) noexcept;
     DataLog &operator=(DataLog &&other) noexcept;
     ~DataLog();
 
-    /// The record counts even where the disk does not take it: it is kept in memory then, among the
-    /// newest MOST_IN_MEMORY records.
+    /// Appends a record. If the disk does not accept it, it is stored in memory, among the newest
+    /// MOST_IN_MEMORY records.
     RecordId append(std::string bytes);
     /// Number of the next record.
     RecordId next_id() const { return next_; }
-    /// Records from `from` on that are still there, at most `most` of them.
+    /// Stored records beginning with `from`, at most `most`.
     std::vector<Record> read(RecordId from, std::size_t most) const;
 
-    /// The newest record, also a confirmed one; empty: there is none.
+    /// The newest record, also if it is confirmed; empty if there is none.
     std::string newest() const;
 
     /// Records before `end` are no longer needed.
     void confirm(RecordId end);
     /// The first record that is not confirmed.
     RecordId confirmed() const { return confirmed_; }
-    /// Records that were dropped before they were confirmed since the log was opened.
+    /// Number of records dropped before they were confirmed, since the log was opened.
     std::uint64_t dropped() const { return dropped_; }
-    /// Why the last record is not on the disk; empty: it is.
+    /// The reason why the last record is not on the disk; empty if it is.
     const std::string &trouble() const { return trouble_; }
-    /// Damaged records that were found at the start.
+    /// Number of damaged records found at the start.
     std::uint64_t damaged() const { return damaged_; }
     /// Makes all records durable. [blocks]
     void sync();

@@ -7,7 +7,8 @@ void Delivery::begin(RecordId confirmed, bool hasReceipts) {
     history_ = history_end_ = live_ = barred_ = confirmed;
     unbarred_ = 0;
     barrier_.reset();
-    // What the broker had shortly before it was lost is sent again: subscribers may not have it.
+    // Records sent shortly before the broker was lost are sent again, because subscribers may not have
+    // received them.
     passed_.clear();
     hasReceipts_ = hasReceipts;
     sent_ = received_ = 0;

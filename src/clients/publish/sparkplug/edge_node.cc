@@ -89,7 +89,7 @@ void EdgeNode::connected() {
     }
 }
 
-/// The connection is gone.
+/// Called when the connection is lost.
 void EdgeNode::lose(const std::string &why) {
     const bool wasOnline = phase_ == Phase::ONLINE;
     if (!std::exchange(hasReported_, true) || wasOnline) {
@@ -101,7 +101,7 @@ void EdgeNode::lose(const std::string &why) {
     broker_ = (broker_ + 1) % std::max<std::size_t>(settings_.brokers, 1);
 }
 
-/// Ends a session that works, as the rules for a node's end are.
+/// Ends an active session by the rules for the end of a node.
 void EdgeNode::leave(const std::string &why) {
     if (phase_ == Phase::ONLINE) {
         link_.publish(death());
@@ -125,7 +125,7 @@ void EdgeNode::end(const Moment &now) {
 
 void EdgeNode::take_state(std::string_view payload) {
     const auto state = read_host_state(payload);
-    // A broker may deliver an older state later: only a newer one counts.
+    // A broker may deliver an older state later, so only a newer state is used.
     if (!state.has_value() || (host_at_.has_value() && state->at < *host_at_)) {
         return;
     }
@@ -135,7 +135,7 @@ void EdgeNode::take_state(std::string_view payload) {
     if (isHostOnline_ && phase_ == Phase::HOST_AWAITED) {
         bear_node();
     } else if (!isHostOnline_ && phase_ == Phase::HOST_AWAITED) {
-        phase_end_s_ = now_.at_s;  // it may be at another broker
+        phase_end_s_ = now_.at_s;  // the host may be at another broker
     } else if (!isHostOnline_ && phase_ == Phase::ONLINE) {
         leave(
             fmt::format("The primary host {} is offline. Values wait on the disk.", settings_.primary_host));
@@ -153,7 +153,7 @@ bool EdgeNode::isRebirthRequested(std::string_view payload) const {
 
 void EdgeNode::take_message(const Publication &message) {
     if (message.topic == topic("NCMD", false)) {
-        // A request that came before the birth is answered by it.
+        // A request received before the birth is answered by the birth.
         isRebirthDue_ = isRebirthDue_ || (phase_ == Phase::ONLINE && isRebirthRequested(message.payload));
     } else if (!settings_.primary_host.empty() &&
                message.topic == fmt::format("{}/STATE/{}", NAMESPACE, settings_.primary_host)) {
@@ -181,7 +181,7 @@ void EdgeNode::take(const LinkEvent &event) {
 
 void EdgeNode::bear_node() {
     const LiveData::State state = data_.state();
-    // A host requests a birth when it has missed messages: what is not confirmed is sent again.
+    // A host requests a birth when it has missed messages, so records that are not confirmed are sent again.
     delivery_.begin(state.confirmed, hasReceipts_);
     birth_ = std::max(now_.utc_ms, birth_ + 1);
     seq_ = 0;
@@ -234,8 +234,8 @@ void EdgeNode::bear_device() {
     send("DBIRTH", true, std::move(birth));
     isDeviceBorn_ = true;
     generation_ = picture.generation;
-    // What came since the last message, or waited for the broker, is history: its newest values are in the
-    // birth.
+    // Records since the last message, and records that waited for the broker, are history; the birth contains
+    // their newest values.
     delivery_.birth(picture.next);
 }
 
@@ -263,7 +263,7 @@ bool EdgeNode::add_record(const Record &record, bool isHistorical, Payload &into
     const std::size_t before = into.metrics.size();
     for (PayloadMetric &metric : stored->metrics) {
         const auto alias = aliases_.find(metric.name);
-        if (alias != aliases_.end()) {  // a machine that was rebuilt has other metrics
+        if (alias != aliases_.end()) {  // a machine with changed settings has other metrics
             into.metrics.push_back({.alias = alias->second,
                                     .at = stored->at,
                                     .type = settings_.isTyped ? metric.type : std::nullopt,
@@ -279,7 +279,7 @@ void EdgeNode::publish_live(const LiveData::State &state) {
         const auto records = data_.read(delivery_.live(), 1);
         const bool isOfThisBirth = state.generation == generation_ || !state.isAlive;
         if (records.empty() || !isOfThisBirth) {
-            return;  // history of the next birth
+            return;  // becomes history of the next birth
         }
         Payload payload;
         if (add_record(records.front(), false, payload)) {
@@ -346,7 +346,7 @@ void EdgeNode::step(const Moment &now) {
         }
         return;
     case Phase::HOST_AWAITED:
-        // With several brokers the host may be at another one.
+        // With several brokers the host may be at another broker.
         if (isOver && settings_.brokers > 1) {
             link_.disconnect();
             lose(fmt::format("The primary host {} is not at this broker.", settings_.primary_host));

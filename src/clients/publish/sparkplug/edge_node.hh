@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // An edge node of Sparkplug B 3.0: births, data, deaths, rebirth, and the values that waited for a broker.
-// The machine is its device. Knows neither sockets nor clocks.
+// The machine is its device. It uses neither sockets nor clocks.
 #pragma once
 
 #include <functional>
@@ -18,28 +18,28 @@ namespace mw::publish {
 
 struct NodeSettings {
     std::string group{}, node{}, device{};
-    std::string primary_host{};  ///< empty: none is waited for
-    std::size_t brokers = 1;     ///< of the list
+    std::string primary_host{};  ///< empty: the node does not wait for a host
+    std::size_t brokers = 1;     ///< number of brokers in the list
     std::string software{};      ///< name and version
     double first_retry_s = 1, longest_retry_s = 30;
-    double answer_s = 10;  ///< for a connection, and for a barrier
+    double answer_s = 10;  ///< timeout of a connection, and of a barrier
     Delivery::Settings delivery{};
-    bool isTyped = false;    ///< data have the types of their values, too
-    std::size_t batch = 50;  ///< records of before in a message
+    bool isTyped = false;    ///< data also contain the types of their values
+    std::size_t batch = 50;  ///< number of history records in a message
 };
 
-/// Reasons why a name cannot be part of a topic; empty: it can.
+/// The reason why a name cannot be part of a topic; empty if it can.
 std::string check_topic_part(std::string_view name);
 
 /// One thread.
 class EdgeNode {
   public:
-    /// Time of the day, and a time that never jumps.
+    /// Time of day, and a monotonic time.
     struct Moment {
         TimeMs utc_ms = 0;
         double at_s = 0;
     };
-    /// Writes the next bdSeq number before it is used.
+    /// Stores the next bdSeq number before it is used.
     using KeepNumber = std::function<void(std::uint64_t next)>;
     using Report = std::function<void(const std::string &)>;
 
@@ -85,9 +85,9 @@ class EdgeNode {
     Phase phase_ = Phase::WAITING;
     double phase_end_s_ = 0, retry_s_;
     std::size_t broker_ = 0;
-    bool hasReported_ = false;  ///< that no broker is reached
+    bool hasReported_ = false;  ///< it was reported that no broker is reached
     std::uint64_t next_bdseq_, bdseq_ = 0;
-    TimeMs birth_ = 0;  ///< of the node; increases strictly
+    TimeMs birth_ = 0;  ///< time of the node's birth; strictly increasing
     std::uint8_t seq_ = 0;
     bool isRebirthDue_ = false;
     std::optional<std::uint64_t> host_at_;  ///< time of the newest STATE
@@ -95,7 +95,7 @@ class EdgeNode {
 
     bool isDeviceBorn_ = false;
     std::uint64_t generation_ = 0;
-    std::map<std::string, std::uint64_t, std::less<>> aliases_;  ///< of the device's metrics
+    std::map<std::string, std::uint64_t, std::less<>> aliases_;  ///< aliases of the device's metrics
     Delivery delivery_;
     std::uint64_t told_dropped_ = 0;
 };

@@ -11,45 +11,45 @@
 
 namespace mw::publish {
 
-/// A metric as its birth describes it.
+/// A metric as described in the birth.
 struct Definition {
     std::string name;
     DataType type = DataType::DOUBLE;
     std::string unit;
 };
 
-/// All values at one moment. Records from `next` on change them.
+/// All values at one moment. Records beginning with `next` change them.
 struct Picture {
-    bool isAlive = false;          ///< the machine is there
-    std::uint64_t generation = 0;  ///< counts new sets of metrics, and returns of the machine
+    bool isAlive = false;          ///< the machine is running
+    std::uint64_t generation = 0;  ///< counts new sets of metrics, and restarts of the machine
     std::vector<Definition> definitions;
     std::vector<Value> values;
-    std::vector<TimeMs> times;  ///< of the values
+    std::vector<TimeMs> times;  ///< times of the values
     RecordId next = 1;
     std::uint64_t dropped = 0;
 };
 
-/// Any thread. A change is in the log before add() returns. Times of records increase strictly, also over a
-/// start of the process and a clock that was set back, so that a value has one key: its metric and its time.
+/// Any thread. A change is in the log before add() returns. Times of records increase strictly, also after a
+/// restart of the process or when the clock is set back. So metric and time are a unique key of a value.
 class LiveData {
   public:
     explicit LiveData(DataLog log);
 
-    // Of the thread that reads the machine.
+    // --- for the thread that reads the machine
 
-    /// The machine is there, with these values.
+    /// Called when the machine is running, with these values.
     void born(const std::vector<Metric> &metrics, std::vector<Value> values, TimeMs now);
     void add(const std::vector<Change> &changes, TimeMs now);
     void gone();
-    /// How far times of new values are ahead of the clock, which was set back [ms].
+    /// Difference between the times of new values and a clock that was set back [ms].
     TimeMs ahead_ms(TimeMs now) const;
-    /// Makes the log durable. Returns why the newest record is not on the disk; empty: it is.
+    /// Makes the log durable. Returns the reason why the newest record is not on the disk; empty if it is.
     std::string sync();
 
-    // Of the thread of the broker.
+    // --- for the thread of the broker
 
     Picture picture() const;
-    /// What of the picture decides what to do.
+    /// The part of the picture that determines the next action.
     struct State {
         bool isAlive = false;
         std::uint64_t generation = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The only file that includes libmosquitto.
+// Implemented with libmosquitto, which only this file includes.
 #include "clients/publish/sparkplug/mosquitto_link.hh"
 
 #include <mosquitto.h>
@@ -14,10 +14,10 @@
 namespace mw::publish {
 namespace {
 
-/// Where certificates of the system are.
+/// Folder of the system's certificates.
 constexpr const char *SYSTEM_AUTHORITIES = "/etc/ssl/certs";
 
-/// The library needs to be set up once in a process.
+/// The library must be initialised once in a process.
 struct Library {
     Library() { mosquitto_lib_init(); }
     ~Library() { mosquitto_lib_cleanup(); }
@@ -162,7 +162,8 @@ void MosquittoLink::publish(const Publication &message) {
 }
 
 int MosquittoLink::barrier() {
-    // The broker answers in the order of what it receives, also to a client that has no such subscription.
+    // The broker answers in the order in which it receives packets, also to an unsubscription without a
+    // subscription.
     int number = 0;
     if (client_ != nullptr) {
         mosquitto_unsubscribe(client_, &number, settings_.not_delivered_topic.c_str());
@@ -173,7 +174,7 @@ int MosquittoLink::barrier() {
 void MosquittoLink::disconnect() {
     if (client_ != nullptr) {
         mosquitto_disconnect(client_);
-        // Writes what the kernel takes now; a broker that hangs is not waited for.
+        // Writes as much as the kernel accepts; does not wait for a broker that hangs.
         mosquitto_loop_write(client_, 1);
         end();
     }

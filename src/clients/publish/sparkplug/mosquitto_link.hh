@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Connections to MQTT brokers by libmosquitto: MQTT 3.1.1, with TLS where it is configured.
+// Connections to MQTT brokers with libmosquitto: MQTT 3.1.1, with TLS if configured.
 #pragma once
 
 #include <chrono>
@@ -27,16 +27,16 @@ struct LinkSettings {
     bool isTls = false;
     std::string authorities;          ///< file of certificates; empty: those of the system
     std::string certificate, key;     ///< files of the client's certificate; empty: none
-    std::string not_delivered_topic;  ///< a topic that is never subscribed: barriers unsubscribe from it
+    std::string not_delivered_topic;  ///< a topic that is never subscribed; barriers unsubscribe from it
 };
 
-/// One thread, which calls wait() again and again.
+/// One thread, which must call wait() repeatedly.
 class MosquittoLink final : public BrokerLink {
   public:
     explicit MosquittoLink(LinkSettings settings);
     ~MosquittoLink() override;
 
-    /// Reads and writes what there is; sleeps for `time` at most.
+    /// Reads and writes available data; sleeps at most for `time`.
     void wait(std::chrono::milliseconds time);
 
     void connect(std::size_t broker, const Publication &will) override;

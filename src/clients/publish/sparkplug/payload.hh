@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Payloads of Sparkplug B, to and from bytes. The only part that knows protobuf.
+// Converts payloads of Sparkplug B to and from bytes. Only this file uses protobuf.
 #pragma once
 
 #include <optional>
@@ -16,18 +16,18 @@ struct PayloadMetric {
     std::string name{};
     std::optional<std::uint64_t> alias{};
     std::optional<TimeMs> at{};
-    std::optional<DataType> type{};  ///< written in births only
-    /// Its number as it was read, also of a type that is not used here; 0: none was there.
+    std::optional<DataType> type{};  ///< written only in births
+    /// The type number that was read, also of a type that is not used here; 0: none.
     std::uint32_t type_number = 0;
     bool isHistorical = false;
     std::string unit{};  ///< written as the property engUnit
     Value value{};
 };
 
-/// Which message of which birth: unique among the messages of a node.
+/// Number of a message in a birth; unique among the messages of a node.
 struct Position {
     TimeMs birth = 0;         ///< time of NBIRTH
-    std::uint64_t count = 0;  ///< messages from NBIRTH on, that and this included
+    std::uint64_t count = 0;  ///< number of messages from NBIRTH on, NBIRTH and this one included
 
     bool operator==(const Position &other) const = default;
 };
@@ -40,7 +40,7 @@ struct Payload {
 };
 
 std::string encode(const Payload &payload);
-/// Nothing when the bytes are no payload. Values of types that are not used here are left out.
+/// Nothing if the bytes are not a payload. Values of types that are not used here are omitted.
 std::optional<Payload> decode_payload(std::string_view bytes);
 
 }  // namespace mw::publish

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Requests of MTConnect and their documents. tests/e2e/publish_mtconnect.py checks the form of all documents.
+// Tests requests of MTConnect and their documents. tests/e2e/publish_mtconnect.py checks the form of all
+// documents.
 #include <algorithm>
 #include <regex>
 
@@ -269,7 +270,7 @@ TEST_F(AgentTest, AnswersGetOnlyAndStreamsInParts) {
     ASSERT_EQ(response.pieces->take(piece, [] {}), screen::PieceQueue::State::PIECE);
     EXPECT_TRUE(piece.starts_with("--" + response.type.substr(response.type.find('=') + 1) + "\r\n"))
         << piece;
-    // A client that does not read is left, and delays nothing.
+    // A client that does not read is disconnected, and delays nothing.
     for (int i = 0; i < 5000 && service.tick(); ++i) {
         now_s += 0.1;
     }

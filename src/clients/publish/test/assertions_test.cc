@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The assertions of the Sparkplug specification 3.0 that apply to an edge node with one device that takes no
-// commands: one test for each, with its identifier, over the packets of one long session. Assertions of host
+// commands: one test for each, with its identifier, on the packets of one long session. Assertions of host
 // applications, brokers, templates, data sets and of devices with outputs do not apply.
 #include <algorithm>
 #include <set>

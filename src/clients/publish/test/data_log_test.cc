@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Records on disk: what was accepted is there after a kill, torn ends and full disks are survived, space is
-// bounded.
+// Tests records on disk: accepted records survive a kill, torn ends and full disks are handled, the size is
+// limited.
 #include <filesystem>
 #include <fstream>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the edge node does with values while brokers and its own process are lost.
+// Tests how the edge node keeps values while brokers and its own process are lost.
 #include <algorithm>
 #include <map>
 #include <random>
@@ -11,8 +11,8 @@
 namespace mw::publish {
 namespace {
 
-/// What a store has whose key is the metric and the time: value by time, of the counter. A second one that
-/// differs is reported.
+/// A store with the key metric and time: value of the counter by time. It reports a second value that
+/// differs.
 class PlayedStore {
   public:
     void take(const std::vector<Packet> &packets) {
@@ -37,7 +37,7 @@ class PlayedStore {
         if (names_[*metric.alias] != "Count") {
             return;
         }
-        // Data have no type: a number comes as its bits.
+        // Data have no type, so a number arrives as its bits.
         const auto *const plain = std::get_if<std::uint64_t>(&metric.value);
         const std::uint64_t bits =
             plain != nullptr ? *plain : static_cast<std::uint64_t>(std::get<std::int64_t>(metric.value));
@@ -59,7 +59,7 @@ TEST(EdgeNode, LosesAndDoublesNothingWhileBrokerAndProcessAreKilled) {
     std::set<std::uint64_t> accepted;
     std::int64_t number = 0;
     const auto receive = [&](std::size_t lost) {
-        // The last messages before a kill may have reached no subscriber.
+        // The last messages before a kill may not have reached a subscriber.
         world.broker.packets.resize(world.broker.packets.size() -
                                     std::min(lost, world.broker.packets.size()));
         store.take(world.broker.packets);
@@ -242,7 +242,7 @@ TEST(EdgeNode, KeepsHistoryUntilItIsSent) {
     world.broker.isThere = false;
     world.bear_machine();
     world.run(1);
-    constexpr std::uint64_t COUNT = 8000;  // sent in more time than the hold-back
+    constexpr std::uint64_t COUNT = 8000;  // takes longer than the hold-back time
     for (std::uint64_t i = 1; i <= COUNT; ++i) {
         world.count(static_cast<std::int64_t>(i));
     }

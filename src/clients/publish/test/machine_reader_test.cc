@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine that starts, works, reports messages and ends, as the publisher reads it.
+// Tests the publisher with a machine that starts, works, reports messages and ends.
 #include <memory>
 
 #include "clients/publish/assembly/machine_reader.hh"
@@ -18,7 +18,7 @@ class MachineReaderTest : public ::testing::Test {
         desk.publish(*status);
     }
     void step() { reader.step(1'700'000'000'000 + static_cast<TimeMs>(now_ns / 1'000'000), now_ns); }
-    /// The newest records' values of a metric.
+    /// The values of a metric in the newest records.
     std::vector<Value> values(const std::string &name) {
         std::vector<Value> found;
         for (const Record &record : data.read(1, 1000)) {

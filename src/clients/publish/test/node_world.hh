@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// An edge node with a machine and a broker that a test plays, in virtual time.
+// An edge node with a simulated machine and a simulated broker, in virtual time.
 #pragma once
 
 #include <deque>
@@ -14,11 +14,11 @@
 
 namespace mw::publish {
 
-/// What the node does with its connection.
+/// A packet that the node sends.
 struct Packet {
     enum class Type { CONNECT, SUBSCRIBE, PUBLISH, BARRIER, DISCONNECT, DROP };
     Type type = Type::PUBLISH;
-    Publication message{};  ///< of CONNECT: the will
+    Publication message{};  ///< CONNECT: the will
     std::size_t broker = 0;
 
     /// "NBIRTH"; empty for other packets.
@@ -31,7 +31,7 @@ struct Packet {
     Payload payload() const { return decode_payload(message.payload).value(); }
 };
 
-/// A broker that records, and answers as the test wants.
+/// A broker that records packets, and answers as set by the test.
 class PlayedBroker final : public BrokerLink {
   public:
     void connect(std::size_t broker, const Publication &will) override {
@@ -107,7 +107,7 @@ class NodeWorld {
         settings.software = "Millwright test";
         start();
     }
-    /// A process: again after kill().
+    /// Starts a process; also after kill().
     void start() {
         data.emplace(std::move(*DataLog::open(folder.path())));
         node.emplace(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the assertions of Sparkplug check, over the packets of one long session of an edge node.
+// Checks of Sparkplug's assertions on the packets of one long session of an edge node.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace mw::publish {
 
 using Packets = std::vector<Packet>;
 
-/// A machine that works, a rebirth, more messages than sequence numbers, a machine that goes and comes, a
-/// broker that is lost and comes back, an end.
+/// The session: a machine that works, a rebirth, more messages than sequence numbers, a machine that ends and
+/// restarts, a broker that is lost and returns, an end.
 inline std::unique_ptr<NodeWorld> long_session() {
     auto world = std::make_unique<NodeWorld>();
     world->bear_machine();
@@ -118,7 +118,7 @@ inline bool areNumbersConsecutive(const std::string &of_verb) {
     return checked > 0;
 }
 
-/// Of each connection: the will and the births that follow.
+/// For each connection: the will and the births after it.
 inline bool areDeathsMatching() {
     Value will;
     std::size_t births = 0;
@@ -153,7 +153,7 @@ inline bool isCountedInARing() {
     return value_of(world.broker.packets.front(), "bdSeq") == Value(std::int64_t{255}) && world.bdseq == 0;
 }
 
-/// Nothing but births between NBIRTH and the first DBIRTH while the machine is there.
+/// Only births between NBIRTH and the first DBIRTH while the machine is running.
 inline bool areBirthsFirst() {
     const auto verbs = session().verbs();
     for (std::size_t i = 0; i + 1 < verbs.size(); ++i) {
@@ -382,7 +382,7 @@ inline bool areNamesChecked() {
            !check_topic_part("\xFF").empty() && check_topic_part("Fräse 1").empty();
 }
 inline bool isHistoryMarked() {
-    // What came while there was no broker is sent later, as history, with its own times.
+    // Values from the time without a broker are sent later as history, with their own times.
     std::set<std::int64_t> sent;
     for (const Packet &packet : session().of("DDATA")) {
         for (const PayloadMetric &metric : packet.payload().metrics) {
@@ -412,7 +412,7 @@ inline bool hasSeq(const char *verb) {
 inline bool isWillPlain() {
     return isWill([](const Publication &will) { return will.qos == 1 && !will.isRetained; });
 }
-/// The counter of dropped records changes: the only metric of the node that does.
+/// Only the counter of dropped records, a metric of the node, may change.
 inline bool isNodeDataRight() {
     NodeWorld world;
     world.bear_machine();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The section [PUBLISH]: what it sets, and what is reported of a wrong one, with line and column.
+// Tests section [PUBLISH]: its settings, and the reported problems with line and column.
 #include <fstream>
 #include <regex>
 

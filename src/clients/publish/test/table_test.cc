@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The table of what is published against the declaration of the status.
+// Compares the table of published values with the declaration of the status.
 #include <algorithm>
 #include <set>
 

@@ -14,7 +14,7 @@ constexpr double MM_PER_INCH = 25.4;
 constexpr int MAX_TOOL_INDEX = 1000;
 constexpr std::size_t BATCH_MOVES = 4096;
 
-/// A tuple (tool number, nine offsets, diameter, front angle, back angle, orientation); what is missing is 0.
+/// A tuple (tool number, nine offsets, diameter, front angle, back angle, orientation); missing items are 0.
 gcode::ToolEntry entry_of(const py::sequence &tool) {
     gcode::ToolEntry entry;
     const std::size_t count = tool.size();
@@ -113,7 +113,7 @@ void PythonCanon::call_pose(const char *name, const gcode::Pose &pose) {
     call(name, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]);
 }
 
-/// Tuples (0 rapid or 1 feed, line, nine coordinates) for canons that take them by the thousand.
+/// Tuples (0 rapid or 1 feed, line, nine coordinates), for canons that accept thousands of moves at once.
 void PythonCanon::move(bool feed, const gcode::Pose &end) {
     if (!batching_) {
         call_pose(feed ? "straight_feed" : "straight_traverse", end);
@@ -149,7 +149,7 @@ void PythonCanon::take(const gcode::CanonCall &call) {
                                SetFeedRate, StraightTraverse, StraightFeed, ArcFeed, NurbsFeed, StraightProbe,
                                RigidTap, Dwell, ChangeTool, ChangeToolNumber, ProgramComment, OperatorMessage,
                                PrintLine, UserCode> auto &one) { hand_on(one); },
-            // The object has no methods for these.
+            // The object has no methods for these calls.
             [](const OneOf<OnReset, SetFeedReference, SetFeedMode, SetMotionControlMode, SetNaivecamTolerance,
                            SetPlannerMode, StartSpeedFeedSynch, StopSpeedFeedSynch, SetSpindleMode,
                            SetSpindleSpeed, StartSpindle, StopSpindle, OrientSpindle, WaitOrientComplete,
@@ -194,7 +194,7 @@ void PythonCanon::hand_on(const gcode::ArcFeed &arc) {
     const gcode::Pose end = inches(arc.end);
     const bool is_uvw =
         plane_ == gcode::Plane::UV || plane_ == gcode::Plane::VW || plane_ == gcode::Plane::UW;
-    // The three axes that the plane leaves out follow as they are; those of the arc's own space are in front.
+    // The axes outside the plane follow without conversion; the axes of the arc's own space come first.
     const int other = is_uvw ? geometry::AXIS_X : geometry::AXIS_U;
     call("arc_feed", inches(arc.first_end), inches(arc.second_end), inches(arc.first_centre),
          inches(arc.second_centre), arc.rotation, inches(arc.axis_end), end[3], end[4], end[5], end[other],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A canon object of a Python program as the interpreter's canon: lengths in inches, angles in degrees.
+// Adapts a canon object of a Python program to the interpreter's canon. Lengths in inches, angles in degrees.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -15,11 +15,11 @@
 
 namespace mw::python {
 
-/// The tools that the canon object's get_tool(index) gives, asked once at the start. Lengths in machine
+/// The tools that the canon object's get_tool(index) returns, read once at the start. Lengths in machine
 /// units.
 class PythonTools final : public gcode::ToolSource {
   public:
-    /// An exception of get_tool is left to the caller.
+    /// An exception of get_tool is passed to the caller.
     void ask(pybind11::handle canon);
 
     int count() const override { return static_cast<int>(entries_.size()); }
@@ -44,7 +44,7 @@ class PythonCanon final : public gcode::Canon {
     void set_codes(const gcode::ActiveCodes &codes) { codes_ = codes; }
     bool hasException() const { return exception_.has_value(); }
     pybind11::error_already_set take_exception();
-    /// Passes the moves that are still in the batch.
+    /// Passes the remaining moves of the batch.
     void finish_batch();
 
     void begin_block(const gcode::BlockRef &block) override { line_ = block.line; }

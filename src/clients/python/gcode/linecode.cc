@@ -8,7 +8,7 @@ namespace py = pybind11;
 namespace mw::python {
 namespace {
 
-/// Places in ActiveCodes, with the names that preview programs use.
+/// Indices in ActiveCodes, with the names that preview programs use.
 struct CodeName {
     const char *name;
     bool is_m;

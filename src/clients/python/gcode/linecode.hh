@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The modal state that next_line gets, with the attributes that preview programs read.
+// The modal state for next_line, with the attributes that preview programs read.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -12,11 +12,11 @@ struct LineCode {
     gcode::ActiveCodes codes;
 };
 
-/// The class linecode.
+/// Defines the class linecode.
 void define_linecode(pybind11::module_ &module);
-/// parse, strerror, MIN_ERROR, MAX_ERROR.
+/// Defines parse, strerror, MIN_ERROR, MAX_ERROR.
 void define_parse(pybind11::module_ &module);
-/// arc_to_segments and calc_extents.
+/// Defines arc_to_segments and calc_extents.
 void define_segments(pybind11::module_ &module);
 
 }  // namespace mw::python

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The extension behind `import gcode` (clients/python/gcode/__init__.py).
+// The extension for `import gcode` (clients/python/gcode/__init__.py).
 #include <pybind11/pybind11.h>
 
 #include "clients/python/gcode/linecode.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// gcode.parse: a program through the interpreter into a canon object.
+// gcode.parse: interprets a program with a canon object.
 #include <array>
 #include <chrono>
 #include <cstdlib>
@@ -29,7 +29,7 @@ constexpr const char *CODE_TEXTS[] = {"done", "the program has ended", "the mach
                                       "the file has ended", "no file is open"};
 
 constexpr const char *LAST_ERROR = "_last_error";
-/// Interval of the check whether the canon object continues.
+/// Interval of checks whether the canon object continues.
 constexpr std::chrono::milliseconds ASK_EVERY{100};
 constexpr int STEPS_PER_LOOK = 64;
 
@@ -55,7 +55,7 @@ class Parse {
                 return failed(1);
             }
         }
-        if (file.empty()) {  // the codes alone
+        if (file.empty()) {  // only the codes
             canon_.finish_batch();
             return {CODE_OK, 0};
         }
@@ -93,10 +93,10 @@ class Parse {
                 return gcode::ini_number(*ini_, section, key);
             };
         }
-        settings.startup_code.clear();  // the canon's owner says what to begin with
+        settings.startup_code.clear();  // the owner of the canon defines the start-up codes
         settings.user_code_assumed = true;
         settings.initial_units = gcode::LengthUnits::INCH;
-        // Preview programs count a machine's length in millimetres per unit the other way round: 1 is mm.
+        // Preview programs use the inverse of the unit in millimetres: 1 is mm.
         constexpr double BETWEEN_UNITS = 0.5;
         const double units = number_from(object_, "get_external_length_units", 1.0);
         world_.units = units < BETWEEN_UNITS ? gcode::LengthUnits::INCH : gcode::LengthUnits::MM;
@@ -112,7 +112,7 @@ class Parse {
         }
     }
 
-    /// Lines of MDI; false when one of them fails.
+    /// Runs lines of MDI; false if a line fails.
     bool run_code(std::string_view code) {
         while (!code.empty()) {
             const std::size_t end = std::min(code.find('\n'), code.size());
@@ -210,7 +210,8 @@ void define_parse(py::module_ &module) {
         "parse",
         [self](const std::string &file, const py::object &canon, const py::object &unitcode,
                const py::object &initcode, const py::object &interpname) {
-            // parse(file, canon, [code, ...], interpname) as well: then the fourth word is the name.
+            // The arguments may also be (file, canon, [code, ...], interpname); the fourth argument is then
+            // the name.
             const bool is_list = py::isinstance<py::list>(unitcode) || py::isinstance<py::tuple>(unitcode);
             const std::string name = text_of(is_list ? initcode : interpname);
             if (!name.empty()) {

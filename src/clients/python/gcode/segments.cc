@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Arcs as chords, and the room that moves take.
+// Arcs as chords, and the extents of moves.
 #include <pybind11/pybind11.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using geometry::Pose;
 constexpr double FULL_TURN = 2 * std::numbers::pi;
 constexpr int DEFAULT_SEGMENTS = 128;
 
-/// The frame that a canon object keeps in its attributes.
+/// The frame in the attributes of a canon object.
 struct ObjectFrame {
     Pose g5x, g92;
     double cos = 1, sin = 0;
@@ -54,7 +54,7 @@ py::tuple tuple_of(const Pose &p) {
     return py::make_tuple(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]);
 }
 
-/// The angle that the arc turns through, counterclockwise above 0.
+/// The sweep of the arc, positive for counterclockwise.
 double sweep(double from, double to, int rotation) {
     constexpr double SAME_ANGLE = 1e-10;
     double angle = to - from;
@@ -76,7 +76,7 @@ struct ArcWords {
     double axis_end;
 };
 
-/// Chords between equal angles, `max_segments` of them for each full turn.
+/// Chords with equal angles, `max_segments` for each full circle.
 py::list chords(const py::object &canon, const ArcWords &arc, const std::array<double, 6> &rest,
                 int max_segments) {
     const ObjectFrame frame(canon);
@@ -118,7 +118,7 @@ py::list chords(const py::object &canon, const ArcWords &arc, const std::array<d
     return out;
 }
 
-/// Lowest and highest X, Y and Z.
+/// Minimum and maximum of X, Y and Z.
 struct Extents {
     static constexpr double NOTHING = 9e99;
     std::array<double, 3> lowest{NOTHING, NOTHING, NOTHING}, highest{-NOTHING, -NOTHING, -NOTHING};

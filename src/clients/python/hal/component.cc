@@ -30,7 +30,7 @@ py::object read_port(const Item &item, unsigned size, bool (*take)(const hal_por
 }
 
 bool write_port(const Item &item, py::handle data) {
-    // A str goes as UTF-8, anything else as the bytes that it offers.
+    // A str is converted to UTF-8; other objects provide their bytes.
     const std::string bytes =
         py::isinstance<py::str>(data)
             ? data.cast<std::string>()
@@ -85,7 +85,7 @@ Component::Component(const std::string &component_name, const std::string &item_
 
 Component::~Component() {
     if (id_ != 0) {
-        // An error here means that the instance is gone, and the component with it.
+        // An error means that the instance has ended, and the component with it.
         static_cast<void>(hal_->components().remove(id_));
         --components_alive;
     }

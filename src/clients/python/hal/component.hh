@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A userspace component and its pins and parameters, as Python holds them.
+// A userspace component with its pins and parameters, for Python.
 #pragma once
 
 #include <map>
@@ -19,12 +19,12 @@ struct Item {
     hal::Dir dir = hal::Dir::IN;
     bool isPin = true;
     bool isEnded = false;
-    void **slot = nullptr;  ///< of a pin: where HAL keeps the address of the value
-    void *place = nullptr;  ///< of a parameter
+    void **slot = nullptr;  ///< pin: location of the address of the value in HAL
+    void *place = nullptr;  ///< parameter: address of the value
 
     pybind11::object get() const;
     void set(pybind11::handle value);
-    /// Where the value lies now.
+    /// Current address of the value.
     volatile void *address() const;
 };
 
@@ -36,7 +36,7 @@ class Component {
     Component &operator=(const Component &) = delete;
 
     std::shared_ptr<Item> new_item(const std::string &name, int type, int dir, bool isPin);
-    /// AttributeError when there is none.
+    /// AttributeError if there is none.
     std::shared_ptr<Item> item(const std::string &name) const;
     std::shared_ptr<Item> item(const std::string &name, bool isPin) const;
     void set_ready(bool isReady);

@@ -24,8 +24,8 @@ using hal::Value;
     throw py::error_already_set();
 }
 
-/// True, or False after the reason went to standard error: the callers of connect, disconnect and new_sig
-/// test a truth value.
+/// True, or False after the reason was written to standard error, because callers of connect, disconnect and
+/// new_sig test a truth value.
 bool succeeded(const Result<> &result) {
     if (!result) {
         PySys_WriteStderr("hal: %s\n", result.error().str().c_str());
@@ -33,7 +33,7 @@ bool succeeded(const Result<> &result) {
     return result.has_value();
 }
 
-/// A bit from a word; anything else is left to HAL's own reader.
+/// Parses a bit; other types are parsed by HAL.
 Result<Value> value_of_text(Type type, const std::string &text) {
     if (type == Type::BIT) {
         std::string word = text;
@@ -80,7 +80,7 @@ bool set_signal(const std::string &name, py::handle object) {
     if (!now) {
         throw_runtime(now.error().str());
     }
-    // A port signal is set to the size of its queue.
+    // The value of a port signal is the size of its queue.
     const Result<> done = now->type == Type::PORT
                               ? hal->signals().set(name, py::str(object).cast<std::string>())
                               : hal->signals().set(name, value_for(now->type, object));
@@ -97,7 +97,7 @@ py::object value_or_throw(const Result<Value> &value) {
     return to_python(*value);
 }
 
-/// Pin, parameter or signal.
+/// Value of a pin, parameter or signal.
 py::object get_value(const std::string &name) {
     const HalHandle hal = instance();
     for (const auto &value : {hal->pins().get(name), hal->params().get(name), hal->signals().get(name)}) {

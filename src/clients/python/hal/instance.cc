@@ -7,8 +7,8 @@ namespace mw::python {
 
 namespace {
 
-/// State of the process, not of an interpreter; never destroyed, since Python may drop components
-/// after static destructors have begun.
+/// State of the process, not of an interpreter. Never destroyed, because Python may drop components after
+/// static destructors have begun.
 struct Process {
     HalHandle joined;
     PyObject *error_class = nullptr;

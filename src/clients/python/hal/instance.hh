@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The HAL instance that a Python process works on, and the errors that Python sees. [the thread that holds
-// the GIL]
+// The HAL instance of a Python process, and the errors that Python sees. [the thread that holds the GIL]
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -12,16 +11,16 @@
 
 namespace mw::python {
 
-/// Keeps the instance in memory while it is in use; null deleter when the process owns it otherwise.
+/// Keeps the instance while it is in use; without a deleter if the process owns it otherwise.
 using HalHandle = std::shared_ptr<hal::Instance>;
 
-/// The instance of this process: the one that it hosts or has joined, else the one that $MILLWRIGHT_INSTANCE
-/// names is joined. Throws RuntimeError when no realtime process keeps it.
+/// The instance of this process: the one that it hosts or has joined; else joins the instance in
+/// $MILLWRIGHT_INSTANCE. Throws RuntimeError when it has no realtime process.
 HalHandle instance();
 
-/// HAL has rejected a call: throws hal.error with the reason.
+/// Throws hal.error with the reason why HAL has rejected a call.
 [[noreturn]] void throw_hal_error(const std::string &text);
-/// As above unless the result is good.
+/// Throws hal.error if the result is an error.
 void check(const Result<> &result);
 
 /// The Python class hal.error.
@@ -32,7 +31,7 @@ void define_functions(pybind11::module_ &module);
 void define_query(pybind11::module_ &module);
 void define_stream(pybind11::module_ &module);
 
-/// Components that this process has and has not ended.
+/// Number of components of this process that have not ended.
 int live_components();
 
 }  // namespace mw::python

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The extension behind `import hal` (python/hal/__init__.py).
+// The extension for `import hal` (python/hal/__init__.py).
 #include <pybind11/pybind11.h>
 
 #include "clients/python/hal/instance.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lists of everything in HAL as dicts; the enums are made by hal/query.py from the numbers.
+// Lists of all HAL objects as dicts; hal/query.py creates the enums from the numbers.
 #include <pybind11/stl.h>
 
 #include "clients/python/hal/convert.hh"

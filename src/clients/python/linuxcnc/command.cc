@@ -20,10 +20,11 @@ namespace {
 constexpr double TAKEN_WITHIN_S = 5.0;
 constexpr double USUAL_TIMEOUT_S = 5.0;
 constexpr double SHOWN_WITHIN_S = 0.5;
-/// After stops other than aborts, a paused program stays active, and other axes may continue to jog.
+/// Duration for which a stop is shown. After stops other than aborts, a paused program remains active, and
+/// other axes may continue to jog.
 constexpr double STOP_SHOWN_WITHIN_S = 0.03;
 constexpr double HOMING_PATIENCE_S = 0.5;
-/// A sleeper sees so often whether Python has a signal for it (Ctrl-C).
+/// Interval of checks for a signal to Python (Ctrl-C) during a sleep.
 constexpr double LONGEST_SLEEP_S = 0.2;
 constexpr int TIME_IS_OVER = -1;
 
@@ -75,7 +76,7 @@ void Command::send(const messages::Command &command) {
             return;
         }
         serial_ = *posted;
-        // The status of the cycle that took it: who polls next sees it.
+        // Waits for the status of the cycle that took the command, so that a later poll contains it.
         const auto isShown = [&] {
             return to.read_status().has_value() && to.status().last_command >= serial_;
         };
@@ -98,8 +99,8 @@ void Command::send_and_look(const messages::Command &command) {
     }
 }
 
-/// An outcome is reported before the status of its cycle, and the queue of motion shows its end a cycle
-/// later: the next poll is to see that no work is active.
+/// Waits until the status shows the end. An outcome is reported before the status of its cycle, and the queue
+/// of motion shows the end one cycle later; the next poll must show that no work is active.
 bool Command::show_end(double seconds) {
     const auto isShown = [this] {
         const bool is_read = client_->read_status().has_value();
@@ -129,7 +130,7 @@ int Command::wait_complete(std::optional<double> timeout_s) {
             if (outcome.progress == messages::Progress::STARTED) {
                 return;
             }
-            if (!at_rest) {  // axes brake
+            if (!at_rest) {  // axes still brake
                 at_rest = outcome.progress != messages::Progress::DONE || show_end(slice_s);
             } else {
                 show_end(isStop_ ? STOP_SHOWN_WITHIN_S : SHOWN_WITHIN_S);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The methods of linuxcnc.command: words of scripts to messages, one each.
+// The methods of linuxcnc.command; each converts a call of a script to a message.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -12,7 +12,7 @@ namespace py = pybind11;
 namespace mw::python {
 namespace {
 
-/// Longest MDI line and path, as clients know it. [bytes]
+/// Maximum length of an MDI line and a path in LinuxCNC's clients. [bytes]
 constexpr std::size_t MAX_LINE = 254;
 
 enum AutoWord { RUN, PAUSE, RESUME, STEP, REVERSE, FORWARD };
@@ -213,7 +213,7 @@ void define_joints(Class &command) {
             py::arg("joint"), py::arg("limit"));
 }
 
-/// A factor below 0 counts as 0, as in LinuxCNC, and is reported.
+/// A factor below 0 is treated as 0, as in LinuxCNC, and reported.
 double checked_factor(Command &self, const char *method, double factor) {
     if (factor >= 0) {
         return factor;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How the objects of this module find the machine: when they are first used, and never by waiting for it.
+// Connects the objects of this module to the machine when they are first used, without waiting for it.
 #pragma once
 
 #include <chrono>
@@ -11,30 +11,30 @@
 
 namespace mw::python {
 
-/// A view of the machine. One for each Python object; guarded by the GIL.
+/// A view of the machine, one for each Python object; guarded by the GIL.
 class View {
   public:
-    /// Joins the machine where it has not; throws linuxcnc.error when there is none, or when it is gone.
+    /// Joins the machine if not joined. Throws linuxcnc.error if there is no machine, or it has ended.
     client::Viewer &viewer();
-    /// Throws linuxcnc.error when the machine has ended. Checks rarely while the status does not change, and
+    /// Throws linuxcnc.error if the machine has ended. Checks rarely while the status does not change, and
     /// never while it changes.
     void check_alive();
     bool isJoined() const { return viewer_.has_value(); }
 
   private:
     std::optional<client::Viewer> viewer_;
-    std::uint64_t cycle_ = 0;  ///< at the last check
+    std::uint64_t cycle_ = 0;  ///< cycle at the last check
     std::chrono::steady_clock::time_point seen_{};
 };
 
-/// The machine that `linuxcnc.nmlfile` names, on this computer or another one. Releases the GIL. Throws
+/// The machine named by `linuxcnc.nmlfile`, on this computer or a remote one. Releases the GIL. Throws
 /// linuxcnc.error.
 client::Viewer connect_viewer();
 
-/// `linuxcnc.nmlfile`, empty where no program and no environment has set it.
+/// `linuxcnc.nmlfile`; empty if neither a program nor the environment has set it.
 std::string nml_file();
 
-/// A machine that is ready for clients. Throws linuxcnc.error.
+/// A client of a machine that is ready for clients. Throws linuxcnc.error.
 client::Client connect_client();
 
 }  // namespace mw::python

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The numbers that scripts compare. They are those of the messages, and never change.
+// The numbers that scripts compare. They equal those of the messages, and never change.
 #include <array>
 
 #include "base/limits.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The drawing functions of the module linuxcnc: paths of programs, into the current context of OpenGL.
+// The drawing functions of the module linuxcnc: draw paths of programs into the current OpenGL context.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -18,7 +18,7 @@ namespace py = pybind11;
 namespace mw::python {
 namespace {
 
-/// Half the size of the cross of a dwell.
+/// Half the size of the cross for a dwell.
 constexpr double DWELL_SIZE = 0.015625;
 
 geometry::Pose pose_of(const py::handle &words) {
@@ -41,7 +41,7 @@ geometry::Pose pose_of(const py::handle &words) {
     return pose;
 }
 
-/// One item of a list: (line, number or place, ...).
+/// One item of a list: (line, number or position, ...).
 py::tuple item_of(const py::handle &words, std::size_t least) {
     auto item = words.cast<py::tuple>();
     if (item.size() < least) {
@@ -61,7 +61,7 @@ class Drawing {
 
     void point(const geometry::Pose &pose) const { gl_.vertex(vertex_of(geometry_, pose, rotation_).data()); }
 
-    /// Number of straight pieces that show a move: one without rotation.
+    /// Number of straight pieces for a move: one if there is no rotation.
     static int pieces(const geometry::Pose &from, const geometry::Pose &to) {
         constexpr int LEAST = 10;
         constexpr double DEGREES = 10;
@@ -69,11 +69,11 @@ class Drawing {
         for (const int axis : {geometry::AXIS_A, geometry::AXIS_B, geometry::AXIS_C}) {
             most = std::max(most, std::abs(to[axis] - from[axis]));
         }
-        constexpr double LIMIT = 10000;  // [deg]: a move of many revolutions has a bounded number of lines
+        constexpr double LIMIT = 10000;  // [deg]: limits the number of lines for a move of many revolutions
         return most == 0 ? 1 : std::max(LEAST, static_cast<int>(std::ceil(std::min(most / DEGREES, LIMIT))));
     }
 
-    /// All but its first point, in a strip.
+    /// Draws all points except the first one, in a strip.
     void move(const geometry::Pose &from, const geometry::Pose &to) const {
         const int count = pieces(from, to);
         for (int i = 1; i < count; ++i) {
@@ -82,7 +82,7 @@ class Drawing {
         point(to);
     }
 
-    /// Pairs of points, as GL_LINES.
+    /// Draws pairs of points, as GL_LINES.
     void separate_move(const geometry::Pose &from, const geometry::Pose &to) const {
         const int count = pieces(from, to);
         for (int i = 0; i < count; ++i) {
@@ -105,7 +105,7 @@ class Drawing {
     RotationCentre rotation_;
 };
 
-/// A glBegin that is ended on every way out.
+/// Calls glBegin, and glEnd at the end of its scope.
 class Strip {
   public:
     explicit Strip(const Gl &gl) : gl_(gl) {}
@@ -154,7 +154,7 @@ void draw_lines(const Drawing &drawing, const py::list &lines, bool selecting) {
     }
 }
 
-/// A cross in the plane without the axis `normal`.
+/// A cross in the plane normal to the axis `normal`.
 void draw_cross(const Gl &gl, const Vertex &at, std::size_t normal) {
     const std::size_t first = normal == 0 ? 1 : 0, second = normal == 2 ? 1 : 2;
     for (const double sense : {1.0, -1.0}) {

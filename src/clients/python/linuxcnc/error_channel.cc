@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// linuxcnc.error_channel: lines for the operator. Each reader gets all lines that were unread when it
-// began. When lines come faster than they are read, the oldest are dropped, and a line reports it.
+// linuxcnc.error_channel: lines for the operator. Each reader receives all lines that were unread when it
+// began. If lines arrive faster than they are read, the oldest lines are dropped, and a line reports this.
 #include "clients/python/linuxcnc/connection.hh"
 #include "clients/python/linuxcnc/module.hh"
 #include "messages/client/shown_message.hh"
@@ -10,7 +10,7 @@ namespace py = pybind11;
 namespace mw::python {
 namespace {
 
-/// Messages quote files of any encoding, and long ones are cut: what is no UTF-8 is replaced by U+FFFD.
+/// Messages quote files of any encoding, and long messages are cut; invalid UTF-8 is replaced by U+FFFD.
 py::str text_of(const std::string &bytes) {
     PyObject *const made =
         PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace");
@@ -23,7 +23,7 @@ py::str text_of(const std::string &bytes) {
 class ErrorChannel {
   public:
     ErrorChannel() {
-        // No line after its construction is missed; before a machine runs, none after the first poll().
+        // Attaches at once, so that no later line is missed; if no machine runs yet, at the first poll().
         try {
             if (client::MachineLink *const link = view_.viewer().link(); link != nullptr) {
                 link->request_messages();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The few functions of OpenGL 1.1 with which screens' pictures are drawn, from the system's library. It is
-// loaded when first drawn with: a machine without a picture needs none.
+// The OpenGL 1.1 functions with which screens draw, from the system's library. It is loaded at first use, so
+// a machine without a screen does not need it.
 #pragma once
 
 namespace mw::python {
@@ -21,7 +21,7 @@ struct Gl {
     void (*color_pointer)(int size, unsigned type, int stride, const void *first);
     void (*draw_arrays)(unsigned mode, int first, int count);
 
-    /// Throws linuxcnc.error when there is none.
+    /// Throws linuxcnc.error if the library is missing.
     static const Gl &library();
 };
 

@@ -14,17 +14,17 @@ namespace py = pybind11;
 namespace mw::python {
 namespace {
 
-/// An INI file as it was when it was opened.
+/// An INI file, as it was when opened.
 class Ini {
   public:
     explicit Ini(const std::string &path) : file_(load(path)) {}
 
-    /// The value, or None when there is none or it is empty.
+    /// The value; None if the key is not set or its value is empty.
     py::object find(const std::string &section, const std::string &key, int number) const {
         const ini::IniEntry *entry = file_.find(section, key, number < 1 ? 1 : number);
         return entry == nullptr || entry->value.empty() ? py::object(py::none()) : py::str(text_of(*entry));
     }
-    /// All values of a key, or of the whole section when the key is empty.
+    /// All values of a key, or of the whole section if the key is empty.
     py::list find_all(const std::string &section, const std::string &key) const {
         py::list out;
         for (const ini::IniEntry &entry : file_.entries()) {
@@ -72,12 +72,12 @@ class Ini {
         if (!messages.empty()) {
             py::module_::import("sys").attr("stderr").attr("write")(messages);
         }
-        return py::cast(result);  // None when it is of another type, never the fallback
+        return py::cast(result);  // None if the value has another type, never the fallback
     }
 
   private:
     static ini::IniFile load(const std::string &path) {
-        diagnostics::Sink ignored;  // other errors of the file are reported by the machine that runs it
+        diagnostics::Sink ignored;  // other errors in the file are reported by the machine that runs it
         auto file = ini::IniFile::load(path, ignored);
         if (!file) {
             throw_error(file.error().str());
@@ -91,7 +91,7 @@ class Ini {
         }
         return out;
     }
-    /// With its escapes replaced.
+    /// The value with its escapes replaced.
     static std::string text_of(const ini::IniEntry &entry) {
         auto text = ini::decode_ini_value(entry.value);
         if (!text) {
@@ -107,7 +107,7 @@ std::optional<std::string> script_text(const ini::IniEntry &entry, std::string &
     return entry.value;
 }
 
-/// One method that reads a typed value, under each of its names.
+/// Defines one method that reads a typed value, under each of its names.
 template <class Reader>
 void define_getter(py::class_<Ini> &ini, std::initializer_list<const char *> names, Reader read) {
     for (const char *name : names) {

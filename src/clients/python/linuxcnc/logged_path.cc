@@ -6,7 +6,7 @@
 namespace mw::python {
 namespace {
 
-/// Largest difference of the cosine of a bend from 1 on a straight line.
+/// Maximum difference from 1 of the cosine of the angle on a straight line.
 constexpr double STRAIGHT = 1e-4;
 
 std::array<double, 3> step_of(const LoggedPoint &from, const LoggedPoint &to) {
@@ -19,8 +19,8 @@ double dot(const std::array<double, 3> &a, const std::array<double, 3> &b) {
 
 }  // namespace
 
-/// The step to the sample continues in the direction of the last line. Compared with the line from its start,
-/// an arc would never leave it: each sample bends only a little from the one before.
+/// Compares the step to the sample with the direction of the last step. Compared with the line from its
+/// start, an arc would never end the line, because each sample changes the direction only slightly.
 bool LoggedPath::isStraightOn(const LoggedPoint &sample) const {
     const LoggedPoint &last = points_.back(), &before = points_[points_.size() - 2];
     const auto way = step_of(before, last), next = step_of(last, sample);
@@ -35,7 +35,7 @@ void LoggedPath::add(const LoggedPoint &sample) {
         return;
     }
     if (points_.back().colour != sample.colour) {
-        LoggedPoint corner = points_.back();  // the new colour begins where the old one ends
+        LoggedPoint corner = points_.back();  // the new colour begins at the end of the old one
         corner.colour = sample.colour;
         corner.other_colour = sample.other_colour;
         points_.push_back(corner);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The extension behind `import linuxcnc` (clients/python/linuxcnc/__init__.py).
+// The extension for `import linuxcnc` (clients/python/linuxcnc/__init__.py).
 #include "clients/python/linuxcnc/module.hh"
 
 #include "clients/python/linuxcnc/view_geometry.hh"

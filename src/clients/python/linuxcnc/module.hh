@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parts of the extension behind `import linuxcnc`.
+// The parts of the extension for `import linuxcnc`.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,7 +14,7 @@ class ViewGeometry;
 /// Throws linuxcnc.error.
 [[noreturn]] void throw_error(const std::string &text);
 
-/// The instance of the machine that this process talks to: $MILLWRIGHT_INSTANCE, else the user's default.
+/// The instance of this process's machine: $MILLWRIGHT_INSTANCE, else the user's default.
 std::string machine_instance();
 
 void define_constants(pybind11::module_ &module);

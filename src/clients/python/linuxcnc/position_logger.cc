@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// linuxcnc.positionlogger: records where the tool has been, in a thread that Python starts.
+// linuxcnc.positionlogger: records the tool path in a thread that Python starts.
 #include <pybind11/pybind11.h>
 
 #include <atomic>
@@ -60,8 +60,8 @@ class PositionLogger {
     PositionLogger(const PositionLogger &) = delete;
     PositionLogger &operator=(const PositionLogger &) = delete;
 
-    /// Samples until stop(), in the thread that calls it. When the program ends meanwhile, Python ends this
-    /// thread by unwinding at its next call. No destructor may run then, so gil_scoped_release is not used.
+    /// Samples until stop(), in the calling thread. If the program ends in this time, Python ends this thread
+    /// by unwinding at its next call. No destructor may run then, so gil_scoped_release is not used.
     void start(double interval_s) {
         wanted_.store(true);
         const std::string instance = machine_instance(), file = nml_file();
@@ -72,7 +72,7 @@ class PositionLogger {
     void sample_until_stop(const std::string &instance, const std::string &file, double interval_s) {
         auto viewer = nml::find_machine(instance, file);
         while (wanted_.load()) {
-            // A machine that was started again, or a connection that was lost, is found again.
+            // Finds the machine again after a restart, or after a lost connection.
             if (!viewer.has_value() || !viewer->isMachineAlive()) {
                 viewer = nml::find_machine(instance, file);
             } else if (viewer->read_status().has_value()) {
@@ -129,7 +129,7 @@ class PositionLogger {
         if (points.empty()) {
             return;
         }
-        // A foam cutter's point is a line between the ends of its wire: two vertices of half the size.
+        // A foam cutter's point is a line between the ends of the wire: two vertices of half the size.
         const int stride = static_cast<int>(sizeof(LoggedPoint)) / (is_foam_ ? 2 : 1);
         gl.enable_client_state(Gl::VERTEX_ARRAY);
         gl.enable_client_state(Gl::COLOR_ARRAY);
@@ -140,7 +140,7 @@ class PositionLogger {
         gl.disable_client_state(Gl::COLOR_ARRAY);
         gl.disable_client_state(Gl::VERTEX_ARRAY);
     }
-    /// All points as bytes, which count as drawn.
+    /// All points as bytes, which then count as drawn.
     py::tuple points() {
         const std::lock_guard lock(mutex_);
         const auto &points = path_.points();
@@ -181,7 +181,7 @@ class PositionLogger {
     bool is_foam_ = false;
     float foam_z_ = 0, foam_w_ = 0;
     LoggedPath path_;
-    std::size_t drawn_ = 0;  ///< points that the screen has taken
+    std::size_t drawn_ = 0;  ///< points that the screen has received
 };
 
 }  // namespace

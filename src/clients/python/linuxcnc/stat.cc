@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// linuxcnc.stat: the status of the machine, as of the last poll(). Its attributes are the rows of
+// linuxcnc.stat: the status of the machine at the last poll(). Its attributes are the rows of
 // messages/legacy/status_table.hh.
 #include <cstring>
 
@@ -15,7 +15,7 @@ namespace {
 
 using Status = messages::MachineStatus;
 
-/// Before the first poll.
+/// The status before the first poll.
 const Status &nothing() {
     static const Status zero = [] {
         Status status;
@@ -28,11 +28,11 @@ const Status &nothing() {
 /// Guarded by the GIL.
 class Stat {
   public:
-    /// Never waits for the machine, and costs it nothing: reads what it published last.
+    /// Reads the last published status; never waits for the machine, and has no cost for it.
     void poll() {
         client::Viewer &viewer = view_.viewer();
         if (viewer.segment().cycles.load(std::memory_order_acquire) == 0) {
-            return;  // programs of HAL files look before task has begun: nothing yet
+            return;  // programs of HAL files may poll before task has begun; the status is then unchanged
         }
         const auto read = viewer.read_status();
         if (!read.has_value()) {

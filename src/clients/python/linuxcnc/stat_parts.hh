@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Parts of the status as the objects that scripts read: poses, joints, axes, spindles, tools.
+// Parts of the status as objects for scripts: poses, joints, axes, spindles, tools.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -11,7 +11,7 @@
 
 namespace mw::python {
 
-/// A value of the status as scripts read it: enumerations as numbers, poses and arrays as tuples.
+/// A value of the status for scripts: enumerations as numbers, poses and arrays as tuples.
 template <class Value>
 pybind11::object as_python(const Value &value) {
     if constexpr (std::is_enum_v<Value>) {
@@ -47,13 +47,14 @@ pybind11::object python_value(const Row &row, const From &from) {
     }
 }
 
-/// One for each that there can be; those that the machine has not are as they are at rest.
+/// One item for each possible joint, axis or spindle; those that the machine does not have contain values at
+/// standstill.
 pybind11::tuple joint_dicts(const messages::MachineStatus &status);
 pybind11::tuple axis_dicts(const messages::MachineStatus &status);
 pybind11::tuple spindle_dicts(const messages::MachineStatus &status);
 /// Named tuples linuxcnc.tool, one for each entry.
 pybind11::tuple tool_tuples(const messages::ToolTable &table);
-/// ValueError when there is none of that number.
+/// ValueError if there is no tool of that number.
 pybind11::dict tool_dict(const messages::ToolTable &table, int toolno);
 
 }  // namespace mw::python

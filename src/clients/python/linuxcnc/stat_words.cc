@@ -19,8 +19,8 @@ RcsState rcs_state(const messages::MachineStatus &status) {
     const bool commanded = status.last_progress == messages::Progress::STARTED ||
                            status.task.interp_state != messages::InterpState::IDLE ||
                            status.task.waiting.what != WaitFor::NOTHING;
-    // Jogs of axes are no work that is under way: screens give further commands meanwhile. A line has ended
-    // with its last move, however the feedback follows.
+    // Jogs of axes do not count as active work, because screens send further commands during a jog. A line
+    // has ended with its last move, independent of the feedback.
     const bool moving = trajectory.queue_depth > 0 || trajectory.isHoming ||
                         (!trajectory.isInPosition && trajectory.mode == messages::MotionMode::FREE);
     return commanded || moving ? RcsState::EXEC : RcsState::DONE;

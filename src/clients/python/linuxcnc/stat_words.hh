@@ -6,9 +6,9 @@
 
 namespace mw::python {
 
-/// Of `stat.state` and wait_complete().
+/// Value of `stat.state` and of wait_complete().
 enum class RcsState : int { NONE = 0, DONE = 1, EXEC = 2, ERROR = 3 };
-/// The last command was rejected or has failed: ERROR, until the next one. DONE: no work is active.
+/// ERROR after the last command was rejected or has failed, until the next command. DONE: no work is active.
 RcsState rcs_state(const messages::MachineStatus &status);
 
 }  // namespace mw::python

@@ -7,7 +7,7 @@
 namespace mw::python {
 namespace {
 
-/// Turns `p` in the plane of two of its coordinates, from the first to the second.
+/// Rotates `p` in the plane of two of its coordinates, from the first to the second.
 void turn(double degrees, const Vertex &centre, std::size_t first, std::size_t second, Vertex &p) {
     const double angle = degrees * std::numbers::pi / 180;
     const double c = std::cos(angle), s = std::sin(angle);
@@ -31,7 +31,7 @@ Vertex vertex_of(const std::string &geometry, const geometry::Pose &pose, const 
             (!geometry::isAngular(axis) || rotation.turning.test(static_cast<std::size_t>(axis)))) {
             const double value = sign * pose[axis];
             switch (axis) {
-            // B turns from X to Z: configurations choose their signs by pictures of this sense.
+            // B rotates from X to Z, because configurations select their signs by this convention.
             case geometry::AXIS_A: turn(value, rotation.centre, 1, 2, p); break;
             case geometry::AXIS_B: turn(value, rotation.centre, 0, 2, p); break;
             case geometry::AXIS_C: turn(value, rotation.centre, 0, 1, p); break;

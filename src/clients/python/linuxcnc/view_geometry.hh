@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How screens turn nine coordinates into a place of their picture.
+// Converts nine coordinates to a position in the picture of a screen.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace mw::python {
 
 using Vertex = std::array<double, 3>;
 
-/// About what A, B and C turn, and which of them do.
+/// The centre of the rotations by A, B and C, and which of them are active.
 struct RotationCentre {
     Vertex centre{};
     std::bitset<geometry::AXIS_COUNT> turning{0x1ff};
@@ -24,10 +24,10 @@ struct RotationCentre {
 /// its direction.
 Vertex vertex_of(const std::string &geometry, const geometry::Pose &pose, const RotationCentre &rotation);
 
-/// What a screen has set for all that is drawn. Any thread.
+/// Settings of a screen for everything that it draws. Any thread.
 class ViewGeometry {
   public:
-    /// `offset`: the rotations are about the origin of the work piece, else about that of the machine.
+    /// `offset`: the rotations are about the origin of the workpiece, else about that of the machine.
     void choose(const std::string &coordinates, bool offset);
     void place_origin(const Vertex &origin);
     RotationCentre centre() const;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The modules gcode, rs274, preview_helpers and linuxcnc.ini, as preview programs use them."""
+"""Tests of the modules gcode, rs274, preview_helpers and linuxcnc.ini, as preview programs use them."""
 import contextlib
 import io
 import math
@@ -15,7 +15,7 @@ import rs274.interpret
 
 
 class Recorder:
-    """Keeps all calls; answers questions from `answers`."""
+    """Stores all calls; answers queries from `answers`."""
 
     def __init__(self, **answers):
         self.calls = []
@@ -99,7 +99,7 @@ class GcodeTest(unittest.TestCase):
         self.assertEqual(lines[3].feed_rate, 10)
 
     def test_codes_may_come_as_a_list_and_without_a_file(self):
-        """As screens call it (J2)."""
+        """Uses the functions as screens do (J2)."""
         canon = Recorder()
         result, _ = gcode.parse(self.write("G1 F600 X1\nM2\n"), canon, ["G20", "G91"], "")
         self.assertLessEqual(result, gcode.MIN_ERROR)
@@ -309,7 +309,7 @@ class IniTest(unittest.TestCase):
         self.assertIsNone(self.ini.getreal("A", "NO"))
         messages = io.StringIO()
         with contextlib.redirect_stderr(messages):
-            # A value that is none is never taken for the fallback.
+            # A value that does not exist is never replaced by the fallback.
             self.assertIsNone(self.ini.getbool("A", "Y", fallback=True))
             self.assertIsNone(self.ini.getint("A", "Y", fallback=3))
             self.assertEqual(self.ini.getuint("A", "X", 2), 2**64 - 2)

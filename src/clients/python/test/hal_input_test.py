@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Tests of hal_input with devices that are named pipes, in the place of the package evdev. usage: hal_input_test.py BIN_FOLDER"""
+"""Tests of hal_input with devices that are named pipes, instead of the package evdev.
+usage: hal_input_test.py BIN_FOLDER"""
 import os
 import pathlib
 import subprocess
@@ -9,7 +10,8 @@ import tempfile
 import unittest
 
 BIN = pathlib.Path(sys.argv.pop())
-# What hal_input calls of evdev 1.6, on pipes: a line "type code value" is an event, "gone" is the end of the device.
+# The calls of hal_input to evdev 1.6, on pipes: a line "type code value" is an event, "gone" is the end of
+# the device.
 EVDEV = '''
 import collections, errno, os, pathlib
 FOLDER = pathlib.Path(os.environ['FAKE_DEVICES'])
@@ -76,7 +78,7 @@ class HalInputTest(unittest.TestCase):
         return done.stdout, done.stderr
 
     def send(self, text, *more):
-        """A line of HAL that gives events to the device, and waits until a pin is TRUE."""
+        """A HAL command that sends events to the device and waits until a pin is TRUE."""
         name = self.folder / f'send{len(list(self.folder.glob("send*")))}.sh'
         pin, value = more
         name.write_text(f"printf '{text}' > {self.folder}/event3\nfor i in $(seq 400); do [ \"$(halcmd getp {pin})\" = {value} ] && exit 0; sleep 0.01; done\n"
@@ -102,7 +104,7 @@ class HalInputTest(unittest.TestCase):
         load = 'loadusr -W hal_input "Vendor=046d Product=c216"\n'
         self.assertEqual(self.values(load + self.send(r'1 272 1\n2 8 3\n2 8 -1\n3 0 192\n', 'input.0.abs-x-counts', 192), 'input.0.btn-left', 'input.0.btn-left-not',
                                      'input.0.rel-wheel-counts', 'input.0.abs-x-position'), ['TRUE', 'FALSE', '2', '0.5'])
-        # Within the flat part it is in the middle; a change that is less than the fuzz is none.
+        # Within the flat range the axis is centred; a change below the fuzz is ignored.
         self.assertEqual(self.values(load + self.send(r'3 0 192\n3 0 195\n1 1 1\n', 'input.0.key-esc', 'TRUE'), 'input.0.abs-x-counts'), ['192'])
         self.assertEqual(self.values(load + self.send(r'3 0 192\n3 0 140\n1 1 1\n', 'input.0.key-esc', 'TRUE'), 'input.0.abs-x-counts'), ['128'])
 

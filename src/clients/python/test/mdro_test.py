@@ -35,7 +35,7 @@ class MdroTest(unittest.TestCase):
         self.place.cleanup()
 
     def start(self, words, after='', nets='net x mdro.axis.0\nnet y mdro.axis.1\nnet i mdro.index-enable.0\n'):
-        """mdro beside a HAL at whose prompt no one types yet; signals x, y, z are its scales."""
+        """Runs mdro with a HAL at whose prompt nothing is typed; the signals x, y, z are its scales."""
         (self.folder / 'a.hal').write_text('newsig x float\nnewsig y float\nnewsig z float\nnewsig i bit\n' f'loadusr -W mdro {words}\n{nets}{after}')
         with open(self.folder / 'said', 'w') as said:
             self.hal = subprocess.Popen([BIN / 'halrun', '-I', 'a.hal'], cwd=self.folder, env=self.env, text=True, stdin=subprocess.PIPE,
@@ -79,13 +79,14 @@ class MdroTest(unittest.TestCase):
         self.do('set', 2, 10)
         self.assertEqual(self.values(), [0, -0.75, 10])
         self.assertEqual(self.values(x=3), [1, -0.75, 10])
-        # Millimetres of scales in inches; degrees stay degrees. What is set is in what is shown.
+        # Scales in inches are shown in millimetres; degrees are not converted. Shown values include the
+        # settings.
         self.do('units', value='mm')
         self.assertEqual(self.values(), [25.4, -19.05, 10])
         self.do('set', 0, 12.7)
         self.do('units', value='inch')
         self.assertEqual(self.values(), [0.5, -0.75, 10])
-        # Each coordinate system has separate offsets; the machine's cannot be changed.
+        # Each coordinate system has separate offsets; the machine's offsets cannot be changed.
         self.do('system', value='G55')
         self.assertEqual(self.values(), [3, -1.5, 90])
         self.do('system', value='machine')
@@ -100,10 +101,10 @@ class MdroTest(unittest.TestCase):
         self.do('index')
         self.assertEqual(self.halcmd('gets', 'i'), 'TRUE')
         self.assertTrue(self.ask()['axes'][0]['index'])
-        self.halcmd('sets', 'i', 0)  # the encoder saw it
+        self.halcmd('sets', 'i', 0)  # the encoder has detected the index
         self.assertFalse(self.ask()['axes'][0]['index'])
         self.do('index')
-        self.do('index')  # and taken back
+        self.do('index')  # and cancelled
         self.assertEqual(self.halcmd('gets', 'i'), 'FALSE')
         self.do('index')
         self.halcmd('unloadusr', 'mdro')

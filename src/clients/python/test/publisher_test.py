@@ -14,7 +14,7 @@ BIN = pathlib.Path(sys.argv.pop())
 
 
 def run(lines):
-    """What halrun says of a HAL file: (output, errors)."""
+    """Output of halrun for a HAL file: (output, errors)."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / 'a.hal'
         path.write_text(lines)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""image-to-gcode judged by its programs alone (J4): they are read as text, and the tool is drawn over the relief by brute force.
+"""Judges image-to-gcode only by its programs (J4): they are parsed as text, and the tool is moved over the
+relief by brute force.
 usage: relief_test.py BIN_FOLDER"""
 import json
 import math
@@ -22,7 +23,7 @@ except ImportError:
 
 
 def rise(kind, radius, r):
-    """The lower side of the tool over its tip, from its description."""
+    """The lower surface of the tool above its tip, from its description."""
     if kind == 'flat':
         return np.zeros_like(r)
     if kind == 'ball':
@@ -31,7 +32,7 @@ def rise(kind, radius, r):
 
 
 def path_of(text):
-    """[(rapid, feed, x, y, z)] of each end of a move, by words alone."""
+    """[(rapid, feed, x, y, z)] for the end of each move, from the words of the program only."""
     here, moves, code, feed = {'X': 0.0, 'Y': 0.0, 'Z': None}, [], None, None
     for line in text.splitlines():
         line = re.sub(r'\(.*\)', '', line).strip()
@@ -47,7 +48,8 @@ def path_of(text):
 
 
 class Judge:
-    """What a tool that goes this way leaves of a block, and how far it goes into the relief. Heights [row from below, column]."""
+    """The stock that a tool on this path leaves, and its depth of cut into the relief. Heights [row from
+    below, column]."""
 
     def __init__(self, heights, pixel, kind, diameter):
         self.h, self.pixel, self.kind, self.radius = heights, pixel, kind, diameter / 2
@@ -68,7 +70,7 @@ class Judge:
         self.gouge = max(self.gouge, float((part - tool).max()))
         self.left[rows, columns] = np.minimum(self.left[rows, columns], tool)
 
-    # Each eighth of a pixel, on the eighths: the edge of a tool lies on pixels.
+    # Positions are at eighths of a pixel, because the edge of a tool lies on pixels.
     def run(self, moves, every=0.125):
         last = None
         for rapid, _, x, y, z in moves:
@@ -102,7 +104,7 @@ class ReliefTest(unittest.TestCase):
         return done.stdout
 
     def picture(self, name, function, width=22, height=17):
-        """A picture of function(x, y) in 0..1, y from below; its gray steps as parts of 1."""
+        """A picture of function(x, y) in 0..1, y from below; its gray steps as fractions of 1."""
         gray = np.array([[round(255 * function(x, y)) for x in range(width)] for y in range(height)], dtype=np.uint8)
         Image.fromarray(gray[::-1]).save(self.folder / name)
         return gray / 255
@@ -119,7 +121,8 @@ class ReliefTest(unittest.TestCase):
 
     def judge(self, gray, text, tool, safety=2.0):
         judge = Judge((gray - 1) * 4, 0.5, tool, 3.0).run(path_of(text))
-        self.assertLessEqual(judge.gouge, 0.01 + 2e-4, tool)  # half of the tolerance, and the digits
+        # half of the tolerance, and the rounding of digits
+        self.assertLessEqual(judge.gouge, 0.01 + 2e-4, tool)
         self.assertGreaterEqual(judge.rapid_depth, safety)
         self.assertTrue(np.isfinite(judge.left).all(), 'the whole area is covered')
         return judge
@@ -134,7 +137,8 @@ class ReliefTest(unittest.TestCase):
                     text = self.program(f'{name}.png', *self.COMMON, '--tool', tool, '--pattern', pattern, '--direction', direction, '--step-over', over)
                     judge = self.judge(gray, text, tool)
                     if over == 1:
-                        # All that this tool reaches anywhere is cut, except for what a guard of an eighth of a pixel costs on slopes.
+                        # Everything that the tool can reach is cut, except for the margin of an eighth of a
+                        # pixel on slopes.
                         reached = self.reachable(judge)
                         slope = max(np.abs(np.diff(judge.h, axis=0)).max(), np.abs(np.diff(judge.h, axis=1)).max())
                         self.assertLessEqual((judge.left - reached).max(), 0.01 + slope / 4 + 2e-4, (name, tool, pattern))
@@ -142,7 +146,7 @@ class ReliefTest(unittest.TestCase):
 
     @staticmethod
     def reachable(judge):
-        """The lowest that the tool can leave over pixels: each position, brute force."""
+        """The minimum height that the tool can leave above each pixel, by brute force over all positions."""
         rows, columns = judge.h.shape
         yy, xx = np.mgrid[0:rows, 0:columns]
         left = np.full(judge.h.shape, np.inf)
@@ -162,7 +166,7 @@ class ReliefTest(unittest.TestCase):
         self.assertTrue(all(b[2] > a[2] for a, b in rows['positive']))
         self.assertTrue(all(b[2] < a[2] for a, b in rows['negative']))
         self.assertEqual({b[2] > a[2] for a, b in rows['alternating']}, {True, False})
-        # A straight line may be off by the tolerance.
+        # A straight line may deviate by the tolerance.
         self.assertTrue(all(b[4] >= a[4] - 0.02 for a, b in rows['up']))
         self.assertTrue(all(b[4] <= a[4] + 0.02 for a, b in rows['down']))
         self.assertTrue(any(b[4] > a[4] + 0.1 for a, b in rows['up']))
@@ -183,7 +187,7 @@ class ReliefTest(unittest.TestCase):
         gray = self.picture('steps.png', self.steps)
         text = self.program('steps.png', *self.COMMON, '--tool', 'flat', '--step-over', 2, '--roughing-offset', 0.5, '--roughing-depth', 1.5)
         self.judge(gray, text, 'flat')
-        # No cut takes more than a layer: the remaining height is updated on the path.
+        # No cut is deeper than a layer. The remaining height is updated along the path.
         judge, last = Judge((gray - 1) * 4, 0.5, 'flat', 3.0), None
         judge.left[:] = 0.0
         for rapid, _, x, y, z in path_of(text):
@@ -201,23 +205,23 @@ class ReliefTest(unittest.TestCase):
         common = [*self.COMMON, '--step-over', 1, '--tool', 'flat', '--tool-diameter', 0.4, '--tolerance', 0]
 
         def depth_at(text, x, y):
-            """How low the cut goes there: along its moves in x."""
+            """Depth of the cut along its moves in x."""
             moves, found = path_of(text), []
             for (_, _, a, b, c), (rapid, _, d, e, f) in zip(moves, moves[1:]):
                 if not rapid and b == e == y and min(a, d) <= x <= max(a, d):
                     found.append(min(c, f) if a == d else c + (f - c) * (x - a) / (d - a))
             return round(min(found), 6)
         one = np.zeros((5, 6), np.uint8)
-        one[0, 2] = 255  # in the uppermost row
+        one[0, 2] = 255  # the pixel is in the uppermost row
         Image.fromarray(one).save(self.folder / 'one.png')
         text = self.program('one.png', *common)
         self.assertEqual((depth_at(text, 1.0, 2.0), depth_at(text, 1.0, 0.0), depth_at(text, 2.5, 2.0)), (0.0, -4.0, -4.0))
         self.assertEqual(depth_at(self.program('one.png', *common, '--invert'), 1.0, 2.0), -4.0)
-        # 16 bits are not cut to 8; normalized from black to white.
+        # 16 bits are not reduced to 8; normalized from black to white.
         Image.fromarray(np.array([[1000, 1100], [1200, 1300]], np.uint16)).save(self.folder / 'deep.png')
         text = self.program('deep.png', *common, '--normalize')
         self.assertEqual([round(depth_at(text, x, y), 3) for x, y in ((0, 0.5), (0.5, 0.5), (0, 0), (0.5, 0))], [-4, -2.667, -1.333, 0])
-        # The border is outside of the picture, which stays where it is.
+        # The border is outside of the picture, whose position does not change.
         text = self.program('one.png', *common, '--expand', 'white', '--tool-diameter', 1.2)
         self.assertEqual(min(x for _, _, x, *_ in path_of(text)), -1.5)
         self.assertEqual(depth_at(text, 1.0, 2.0), 0.0)
@@ -254,7 +258,7 @@ class ReliefTest(unittest.TestCase):
             self.assertEqual((done.returncode, done.stdout), (1, ''), words)
             self.assertIn(said, done.stderr)
         self.assertIn('stock stays between them', self.call('dome.png', '--step-over', 20).stderr)
-        # A file is written whole or not at all.
+        # A file is written completely or not at all.
         self.program('dome.png', '-o', 'out.ngc')
         self.assertTrue((self.folder / 'out.ngc').read_text().endswith('M5\nM2\n'))
         self.assertEqual(self.call('dome.png', '-o', 'nowhere/out.ngc').returncode, 1)

@@ -9,7 +9,8 @@ import tempfile
 import unittest
 
 BIN = pathlib.Path(sys.argv.pop()).resolve()
-# Beside the program: writes reports into a pipe and says what the pins do. A state that is not reached ends it with an error.
+# Runs beside the program: writes reports into a pipe and reports the pins. A state that is not reached ends
+# it with an error.
 DRIVER = '''
 import hal, os, sys, time
 SHOWN = 'counts', 'spring-wheel-s32', 'spring-wheel-f'
@@ -61,7 +62,7 @@ class ShuttleTest(unittest.TestCase):
                        f'send(out, "0009000000"); wait((0, 0, []))\nsend(out, "0009001000"); wait((0, 0, [{0 if model == "xpress" else 4}]))\n', f'wheel={model}')
 
     def test_wheels(self):
-        # The first report has the position of the jog wheel; its counter has eight bits.
+        # The first report contains the position of the jog wheel, whose counter has eight bits.
         self.drive('out = pipe()\nsend(out, "03fe000000"); wait((0, 3, []))\nsend(out, "f901000000"); wait((3, -7, []))\n'
                    'send(out, "07fb000000"); wait((-3, 7, []))\nfor n in range(200):\n    send(out, f"01{(0xfb + n) % 256:02x}000000")\nwait((196, 1, []))\n')
 
@@ -76,7 +77,7 @@ class ShuttleTest(unittest.TestCase):
         self.assertIn('shuttle.0 (wheel) is back', err)
 
     def test_garbage_moves_nothing(self):
-        # A wheel past its end, a truncated report; the counts neither move nor jump.
+        # A wheel beyond its end, a truncated report: the counts do not move or jump.
         for garbage in ('0809001000', '8009000000', '07ff'):
             _, err = self.drive('out = pipe()\nsend(out, "0005000000"); wait((0, 0, []))\nsend(out, "f907001000"); wait((2, -7, [0]))\n'
                                 f'send(out, "{garbage}"); wait((2, 0, []))\nsend(out, "{garbage}")\ntime.sleep(0.05); wait((2, 0, []))\n'

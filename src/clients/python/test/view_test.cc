@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The picture of screens: the position of nine coordinates in it, and the path behind the tool.
+// Tests the picture of screens: the position of nine coordinates in it, and the path behind the tool.
 #include <cmath>
 #include <numbers>
 
@@ -42,7 +42,8 @@ TEST(ViewGeometryTest, TheCentreOfRotationsIsThatOfTheMachineOrOfTheWorkPiece) {
     view.place_origin({1, 2, 3});
     view.choose("XYZA", false);
     expect_near(vertex_of("XYZA", pose({0, 0, 10, 90}), view.centre()), {0, -10, 0});
-    expect_near(vertex_of("XYZB", pose({0, 0, 10, 0, 90}), view.centre()), {0, 0, 10});  // there is no B
+    // the machine has no B
+    expect_near(vertex_of("XYZB", pose({0, 0, 10, 0, 90}), view.centre()), {0, 0, 10});
     view.choose("XYZA", true);
     expect_near(vertex_of("XYZA", pose({0, 2, 3, 77}), view.centre()), {0, 2, 3});
     expect_near(vertex_of("XYZA", pose({0, 0, 10, 0}), view.centre()), {0, 0, 10});
@@ -67,7 +68,7 @@ TEST(LoggedPathTest, AStraightLineIsTwoPointsAndEachCornerStays) {
         path.add(at(10, i * 0.01));
     }
     for (int i = 1; i <= 500; ++i) {
-        path.add(at(10, 10 - i * 0.01));  // back over the same line
+        path.add(at(10, 10 - i * 0.01));  // back along the same line
     }
     path.add(at(10, 5));  // stopped
     ASSERT_EQ(path.points().size(), 4U);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Files that Python programs write are the old ones or the new ones. usage: whole_file_test.py PYTHON_FOLDER"""
+"""Tests that files written by Python programs are either the old or the new file.
+usage: whole_file_test.py PYTHON_FOLDER"""
 import os
 import pathlib
 import signal
@@ -62,7 +63,7 @@ class WholeFileTest(unittest.TestCase):
         self.assertEqual(set(os.listdir(self.folder)), {'part.ini', name})
 
     def test_the_name_is_that_of_the_programs_in_cpp(self):
-        """base/temporary_file.cc removes it as well."""
+        """base/temporary_file.cc removes the file, too."""
         self.half_writer()
         [name] = os.listdir(self.folder)
         self.assertRegex(name, r'^\.part\.ini\.millwright-[0-9a-v]{10}$')

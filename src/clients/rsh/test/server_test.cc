@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The port: connections in and out, on loopback.
+// Tests the port: connections in and out, on loopback.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -16,7 +16,7 @@
 namespace mw::rsh {
 namespace {
 
-/// Says each byte again; ends at a full stop, and the server at an exclamation mark.
+/// Returns each byte. A full stop ends the conversation, an exclamation mark the server.
 class Echo final : public Conversation {
   public:
     Echo(std::atomic<int> &living, bool mute) : living_(living), isMute_(mute) { ++living_; }
@@ -69,7 +69,7 @@ class RshServerTest : public ::testing::Test {
         EXPECT_EQ(::connect(fd, reinterpret_cast<const sockaddr *>(&place), sizeof place), 0);
         return fd;
     }
-    /// Bytes until the other side closes, or at most so many.
+    /// Bytes until the peer closes, or at most this many.
     static std::string hear(int fd, std::size_t most) {
         std::string all;
         char byte = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A connection with a task that accepts its commands.
+// Tests a connection with a task that accepts its commands.
 #include <memory>
 #include <string>
 
@@ -36,7 +36,7 @@ class RshTest : public ::testing::Test {
         return std::make_unique<Session>(settings, *shared,
                                          [this] { return client::Client::join(memory.segment()); });
     }
-    /// A cycle of task; what it was asked for, as text.
+    /// Runs a cycle of task; returns the commands as text.
     void cycle() {
         for (const auto &delivery : desk.take(now_ns += 1000000)) {
             asked += (asked.empty() ? "" : ", ") + messages::to_text(delivery.command);
@@ -52,7 +52,7 @@ class RshTest : public ::testing::Test {
         EXPECT_TRUE(shared->read().has_value());
         session->step(static_cast<double>(now_ns) * 1e-9);
     }
-    /// The answer to a line within some cycles.
+    /// The answer to a line, within some cycles.
     std::string say(const std::string &line) {
         asked.clear();
         session->take(line + "\r\n");
@@ -99,7 +99,7 @@ TEST_F(RshTest, NothingIsCommandedBeforeHelloAndTheSecondPassword) {
     EXPECT_EQ(say("set enable EMCTOO"), "set enable EMCTOO\r\n");
     EXPECT_EQ(say("set mode mdi"), "set mode mdi\r\n");
     EXPECT_NE(asked, "");
-    // A wrong password afterwards revokes both.
+    // A later wrong password revokes both.
     EXPECT_EQ(say("hello WRONG me 1.0"), "HELLO NAK\r\n");
     EXPECT_EQ(say("set mode mdi"), "SET MODE NAK\r\n");
 }
@@ -218,7 +218,7 @@ TEST_F(RshTest, AJogHasALeaseAndStopsWithItsConnection) {
 TEST_F(RshTest, AJogThatHasEndedIsNotRenewed) {
     greet();
     say("set jog 1 60");
-    progress = Progress::REFUSED;  // the renewal: a limit has ended it
+    progress = Progress::REFUSED;  // the renewal is rejected, because a limit has ended the jog
     for (int i = 0; i < 150; ++i) {
         cycle();
     }

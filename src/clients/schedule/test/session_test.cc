@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Connections and a queue, with a task that takes what it is asked for.
+// Tests connections and a queue, with a task that accepts their commands.
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,7 +28,7 @@ class ScheduleTest : public ::testing::Test {
         scheduler.emplace([this] { return client::Client::join(memory.segment()); }, "/p");
         session = std::make_unique<Session>(Shared{settings, *view, *scheduler});
     }
-    /// A cycle of task and of the server.
+    /// Runs a cycle of task and of the server.
     void cycle() {
         for (const auto &delivery : desk.take(now_ns += 1000000)) {
             const std::string text = messages::to_text(delivery.command);

@@ -31,7 +31,7 @@ void append(std::string &bytes, T value) {
     bytes.append(raw, sizeof raw);
 }
 
-/// With its head, and padded to whole words.
+/// A chunk with its head, padded to whole words.
 inline std::string chunk(Chunk kind, std::string body, char padding) {
     constexpr std::size_t WORD = 4;
     body.append((WORD - body.size() % WORD) % WORD, padding);

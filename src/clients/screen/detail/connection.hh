@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One connection and its answers. Included by server.cc alone.
+// One connection and its answers. Only server.cc includes it.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,8 @@ inline std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
 }
 
-/// A header that decides about access and occurs more than once: a proxy may read the other one. Empty: none.
+/// A header for access control that occurs more than once, because a proxy may use another occurrence. Empty:
+/// none.
 inline std::string_view field_set_twice(const HttpRequest &request) {
     constexpr std::array<std::string_view, 5> FIELDS{"Host", "Origin", "Sec-Fetch-Site", "Authorization",
                                                      "Cookie"};
@@ -33,10 +34,10 @@ inline std::int64_t monotonic_ns() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
-/// For bytes that still arrive when a connection ends.
+/// Time for bytes that still arrive when a connection ends.
 inline constexpr std::chrono::milliseconds DRAIN_TIME{2000};
 
-/// One connection, one request after the other.
+/// One connection, which handles one request after the other.
 class Connection : public std::enable_shared_from_this<Connection> {
   public:
     Connection(Server::Impl &server, Door &door, tcp::socket socket, bool is_local, bool isForeign)
@@ -86,10 +87,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
             if (is_http && error != http::error::end_of_stream && error != http::error::partial_message) {
                 reply(error_response(400, "this is no HTTP request: " + error.message()));
             }
-            return;  // or no client is there
+            return;  // or there is no client
         }
         const HttpRequest &request = parser_->get();
-        // An answer to HEAD has no body by its rule, ours has: nothing may follow it.
+        // An answer to HEAD must not have a body, but ours has one, so nothing may follow it.
         is_last_ = !request.keep_alive() || request.method() == http::verb::head;
         if (const auto twice = field_set_twice(request); !twice.empty()) {
             reply(error_response(400, "the request has two headers '" + std::string(twice) + "'"));
@@ -126,7 +127,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
             reply(std::move(answer));
             return;
         }
-        // The screen itself is no secret: its first page requests the token.
+        // The first page of the screen is accessible without a token, because it asks for the token.
         const bool for_all = !asked->path.starts_with("/api/") && asked->path != "/metrics";
         if (asked->role == Role::NOBODY && !for_all) {
             reply(error_response(401, "show a token: 'Authorization: Bearer TOKEN', or POST /api/login"));
@@ -206,7 +207,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
     void release_body() { server_.answer_bytes -= std::exchange(held_bytes_, 0); }
 
-    /// Ends the work for an answer whose client has hung up while none of it was to be sent.
+    /// Cancels the work for an answer if its client disconnects before any part of it is sent.
     void watch_peer() {
         peer_check_.expires_after(server_.limits.check_time);
         peer_check_.async_wait([self = shared_from_this()](error_code ended) {
@@ -249,7 +250,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
                                  });
     }
 
-    /// Of a body whose size is known. A client that does not take a piece in time is disconnected.
+    /// For a body of known size. A client that does not receive a piece in time is disconnected.
     void next_part() {
         if (left_ == 0) {
             end_reply({});
@@ -272,7 +273,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }
 
     void next_piece() {
-        if (pieces_ == nullptr) {  // the client has hung up
+        if (pieces_ == nullptr) {  // the client has disconnected
             return;
         }
         const auto wake = [self = shared_from_this()] {
@@ -318,7 +319,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         drain();
     }
 
-    /// Reads the bytes that still arrive: if it closed before, the browser would not see the answer.
+    /// Reads the bytes that still arrive; closing earlier could prevent the browser from reading the answer.
     void drain() {
         constexpr std::size_t MOST = 16UL * 1024 * 1024;
         buffer_.clear();
@@ -334,7 +335,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     Server::Impl &server_;
     Door &door_;
     const bool isOfServerUser_,
-        isForeign_;  ///< of this computer: the user of the server or root; another one
+        isForeign_;  ///< on this computer: false for the user of the server or root, true for other users
     std::unique_ptr<Wire> wire_;
     const std::string own_address_ = wire_->own_address();
     beast::flat_buffer buffer_;
@@ -342,9 +343,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
     net::steady_timer peer_check_{server_.loop};
     std::shared_ptr<PieceQueue> pieces_;
     std::shared_ptr<BodySource> source_;
-    std::uint64_t left_ = 0;  ///< bytes of it that are not sent yet
+    std::uint64_t left_ = 0;  ///< bytes that are not sent yet
     std::string piece_;
-    std::size_t held_bytes_ = 0;  ///< of the body that is being sent, in memory
+    std::size_t held_bytes_ = 0;  ///< size in memory of the body being sent
     std::size_t drained_ = 0;
     bool is_last_ = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Parts of the server, and its open sockets. Included by server.cc alone.
+// Parts of the server, and its open sockets. Only server.cc includes it.
 #pragma once
 
 #include <boost/asio/steady_timer.hpp>
@@ -28,10 +28,10 @@ class Session;
 struct Door {
     Access access;
     RateLimit requests;
-    std::optional<RateLimit> greetings{};  ///< none: of this computer, as many as come
+    std::optional<RateLimit> greetings{};  ///< nothing for this computer: unlimited
     int most_connections = 0, most_sessions = 0;
     int connections = 0, sessions = 0;
-    /// Of these, of other users of this computer.
+    /// Number of these from other users of this computer.
     int foreign_connections = 0, foreign_sessions = 0;
     int port = 0;
     std::optional<OriginCheck> gate{};
@@ -43,7 +43,7 @@ struct Listener {
     Listener(net::io_context &loop, Door &of) : door(of), acceptor(loop), pause(loop) {}
     Door &door;
     tcp::acceptor acceptor;
-    net::steady_timer pause;  ///< while nothing is accepted
+    net::steady_timer pause;  ///< runs while no connection can be accepted
 };
 
 }  // namespace detail
@@ -57,23 +57,24 @@ class Server::Impl {
     Result<> listen(detail::Door &door, const detail::net::ip::address &address, int port);
     void accept(detail::Listener &listener);
     void accept_later(detail::Listener &listener);
-    /// False where the kernel does not report it.
+    /// False if the kernel does not report the user.
     bool isOfServerUser(const detail::tcp::socket &socket);
-    /// Their browsers connect again, with the cookie that they have got meanwhile.
+    /// Closes the sockets of the role STATUS; their browsers reconnect with the cookie that they have
+    /// received.
     void close_status_sessions();
-    /// The socket is closed, for any reason.
+    /// Called when the socket is closed for any reason.
     void forget(SessionId id);
 
     const ServerLimits limits;
     std::string page_rules;
     std::function<Result<SocketFacts>(const Endpoint &, const Endpoint &)> find_socket;
     std::function<void(const std::string &)> report;
-    std::deque<detail::Door> doors;  ///< outlive the loop, which ends connections
+    std::deque<detail::Door> doors;  ///< must outlive the loop, which ends connections
     Application *application = nullptr;
     SessionId last_session = 0;
-    std::size_t answer_bytes = 0;  ///< of bodies that are being sent
+    std::size_t answer_bytes = 0;  ///< size of the bodies being sent
     detail::net::io_context loop{1};
-    std::deque<detail::Listener> listeners;  ///< of the doors in their order
+    std::deque<detail::Listener> listeners;  ///< for the doors in their order
     std::map<SessionId, std::shared_ptr<detail::Session>> sessions;
 };
 
@@ -154,7 +155,7 @@ class Session : public std::enable_shared_from_this<Session> {
             self->read();
         });
     }
-    /// A browser that does not take a text in time is disconnected.
+    /// Writes the next text. A browser that does not receive it in time is disconnected.
     void write() {
         untaken_.expires_after(server_.limits.request_time);
         untaken_.async_wait([self = weak_from_this()](error_code ended) {
@@ -182,7 +183,7 @@ class Session : public std::enable_shared_from_this<Session> {
     Door &door_;
     SessionId id_;
     Role role_;
-    bool isForeign_;  ///< of another user of this computer
+    bool isForeign_;  ///< opened by another user of this computer
     websocket::stream<Link> socket_;
     HttpRequest request_;
     beast::flat_buffer buffer_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a stranger can make TLS do is bounded: all screens share one thread. Included by server.cc alone.
+// Limits the work that an unknown client can cause in TLS, because all screens share one thread. Only
+// server.cc includes it.
 #pragma once
 
 #include <openssl/ssl.h>
@@ -11,12 +12,12 @@
 
 namespace mw::screen::detail {
 
-/// Messages of handshakes that a peer may send in all: its greeting has six at the most, the others are
-/// changes of keys, which cost more to calculate than to send.
+/// Maximum number of handshake messages of a peer: the handshake has at most six, the others are key updates,
+/// which cost more to calculate than to send.
 constexpr int MOST_TLS_MESSAGES = 64;
 
-/// Called by OpenSSL for each message; `messages` is the peer's count. What comes after the last one is
-/// thrown away, and reading ends as if the peer had ended it.
+/// Called by OpenSSL for each message; `messages` is the peer's count. Data after the last permitted message
+/// are discarded, and reading ends as if the peer had closed.
 inline void count_tls_message(int isWritten, int, int type, const void *, std::size_t, SSL *tls,
                               void *messages) {
     if (isWritten == 0 && type == SSL3_RT_HANDSHAKE && messages != nullptr &&
@@ -25,8 +26,8 @@ inline void count_tls_message(int isWritten, int, int type, const void *, std::s
     }
 }
 
-/// TLS 1.2 or later, without renegotiation, sessions that are kept, and groups that are slow to calculate
-/// (a key of ffdhe8192 takes as long as several leases of jogs).
+/// TLS 1.2 or later, without renegotiation, session resumption and slow groups (a key of ffdhe8192 takes as
+/// long as several leases of jogs).
 inline boost::system::error_code set_up(boost::asio::ssl::context &context, const Certificate &certificate) {
     SSL_CTX *raw = context.native_handle();
     SSL_CTX_set_options(raw, SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A connection, with TLS or without: one type for Beast, whose templates are long in compiling. Included by
-// server.cc alone.
+// A connection with or without TLS: one type for Beast, whose templates take long to compile. Only server.cc
+// includes it.
 #pragma once
 
 #include <fcntl.h>
@@ -26,12 +26,12 @@ namespace beast = boost::beast;
 using boost::system::error_code;
 using net::ip::tcp;
 
-/// No program that is started from here keeps it open.
+/// Prevents that child processes keep it open.
 inline void keep_to_ourselves(int socket) {
     ::fcntl(socket, F_SETFD, FD_CLOEXEC);
 }
 
-/// Little waits in the kernel, so that what is sent is new; and it is sent at once.
+/// Limits the data that wait in the kernel, so that sent data are current, and sends at once.
 inline void send_promptly(tcp::socket &socket) {
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
@@ -39,13 +39,13 @@ inline void send_promptly(tcp::socket &socket) {
     ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &MOST_UNSENT, sizeof MOST_UNSENT);
 }
 
-/// An address as a browser writes it.
+/// An address in the form that browsers use.
 inline std::string bracketed(const net::ip::address &address) {
     const std::string text = address.to_string();
     return address.is_v6() ? '[' + text + ']' : text;
 }
 
-/// Stays where it is made: its TLS points at its stream.
+/// Must not be moved, because its TLS object points to its stream.
 class Wire {
   public:
     using executor_type = beast::tcp_stream::executor_type;
@@ -62,18 +62,18 @@ class Wire {
     executor_type get_executor() { return stream_.get_executor(); }
     beast::tcp_stream &stream() { return stream_; }
 
-    /// Where it ends on this side.
+    /// Address of this side of the connection.
     std::string own_address() {
         error_code error;
         const auto place = stream_.socket().local_endpoint(error);
         return error ? std::string() : bracketed(place.address());
     }
-    /// The peer has closed its side, or the connection is broken. Reads nothing.
+    /// True if the peer has closed its side, or the connection is broken. Reads nothing.
     bool hasHungUp() {
         pollfd look{stream_.socket().native_handle(), POLLRDHUP, 0};
         return ::poll(&look, 1, 0) > 0 && (look.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
     }
-    /// Of the computer at its other end.
+    /// Address of the peer.
     std::string peer_address() {
         error_code error;
         const auto place = stream_.socket().remote_endpoint(error);
@@ -111,7 +111,7 @@ class Wire {
     std::optional<net::ssl::stream<beast::tcp_stream &>> tls_;
 };
 
-/// A wire as a stream of Beast, which can be moved.
+/// A movable stream for Beast that refers to a wire.
 class Link {
   public:
     using executor_type = beast::tcp_stream::executor_type;
@@ -137,8 +137,8 @@ class Link {
     std::unique_ptr<Wire> wire_;
 };
 
-/// Called by Beast when a socket ends in order or is broken. The peer is not waited for, who may never go:
-/// what the socket has begun is to end now.
+/// Called by Beast when a socket is closed or broken. Does not wait for the peer, because the jogs of the
+/// socket must end now.
 template <class Handler>
 void async_teardown(beast::role_type, Link &link, Handler &&handler) {
     error_code error;

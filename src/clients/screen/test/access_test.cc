@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Tokens, roles and the files they are kept in (J3).
+// Tests tokens, roles and their files (J3).
 #include <openssl/bn.h>
 #include <openssl/pem.h>
 #include <openssl/x509.h>
@@ -178,7 +178,7 @@ TEST_F(AccessTest, ACertificateIsMadeOnceAndReadAgain) {
     EXPECT_NE(half.error().str().find("without its key"), std::string::npos);
 }
 
-// A number that begins with a zero byte is none in DER: OpenSSL cannot read such a certificate again.
+// A number that begins with a zero byte is not valid in DER: OpenSSL cannot read such a certificate.
 TEST_F(AccessTest, ACertificateCanBeReadAgainWhateverItsNumber) {
     constexpr unsigned LONGEST_BITS = 127, WAYS = 20;
     for (unsigned i = 0; i < WAYS; ++i) {

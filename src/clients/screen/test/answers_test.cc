@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Memory of the server for large answers to slow and closed clients.
+// Tests memory of the server for large answers to slow and closed clients.
 #include <gtest/gtest.h>
 
 #include "clients/screen/test/server_peer.hh"
@@ -15,7 +15,7 @@ TEST_F(AnswersTest, ReadsALargeBodyOnlyAsFastAsItsClientTakesIt) {
     constexpr std::uint64_t SIZE = 276UL * 1000 * 1000, MOST = 16UL * 1024 * 1024;
     echo.make_source = [&] { return std::make_shared<LargeFile>(SIZE, count); };
     std::vector<std::unique_ptr<Peer>> peers;
-    for (int i = 0; i < 14; ++i) {  // that never read
+    for (int i = 0; i < 14; ++i) {  // clients that never read
         peers.push_back(std::make_unique<Peer>(server->port()));
         write(*peers.back(), "GET /large HTTP/1.1\r\n" + host() + "\r\n");
     }
@@ -60,7 +60,7 @@ TEST_F(AnswersTest, DisconnectsASocketThatDoesNotTakeAText) {
     Peer peer(server->port());
     ask(peer, upgrade(), "\r\n\r\n");
     ASSERT_TRUE(areOpened(1));
-    for (int i = 0; i < 3; ++i) {  // more than the kernel takes, and less than may wait
+    for (int i = 0; i < 3; ++i) {  // more than the kernel accepts, but less than may wait
         server->send(echo.open[0], std::string(1UL << 20, 'x'));
     }
     EXPECT_TRUE(run_until([&] { return !echo.ended.empty(); }));

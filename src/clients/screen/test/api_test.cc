@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The routes of docs/reference/api.md (J3).
+// Tests the routes of docs/reference/api.md (J3).
 #include <unistd.h>
 
 #include <filesystem>
@@ -103,7 +103,7 @@ TEST_F(ApiTest, TheToolTableIsTold) {
     ASSERT_TRUE(task.desk.publish_tools(table));
     task.cycle();
     api->tick();
-    for (int i = 0; i < 2; ++i) {  // asked again it has not changed
+    for (int i = 0; i < 2; ++i) {  // unchanged when requested again
         const Json told = Json::parse(ask("GET", "/api/tools").body);
         EXPECT_EQ(told["version"], 7);
         EXPECT_EQ(told["tools"][1]["toolno"], 12);
@@ -212,7 +212,7 @@ TEST_F(ApiTest, PagesFiguresAndWhatThereIsNot) {
     EXPECT_NE(ask("GET", "/metrics").body.find("\nmillwright_machine_up 1\n"), std::string::npos);
 }
 
-/// The table of docs/reference/api.md, Who may: a row is a request and the least role that it needs.
+/// The table of docs/reference/api.md, Who may: each row is a request and the minimum role that it needs.
 TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable) {
     struct Row {
         const char *method, *target, *body;
@@ -295,7 +295,7 @@ TEST_F(ApiTest, EachCommandIsAStopOrNeedsAnOperator) {
                 << declaration->name << " as " << role_name(asking);
         }
     }
-    // SetState depends on its state.
+    // For SetState the role depends on the state.
     for (const auto &[state, stop] :
          {std::pair("ESTOP", true), {"OFF", true}, {"ON", false}, {"ESTOP_RESET", false}}) {
         constexpr SessionId VIEWER = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Questions of HAL to the operator (J2).
+// Tests questions of HAL to the operator (J2).
 #include "clients/screen/dialogs.hh"
 #include "components/test/bench.hh"
 
@@ -84,7 +84,7 @@ TEST_F(DialogsTest, ANumberChoosesItsText) {
     set("vfd", 3);
     EXPECT_EQ(dialogs.look(), Places{5});
     EXPECT_EQ(dialogs.take_notes(), std::vector<std::string>{"Overheat"});
-    EXPECT_FALSE(dialogs.answer("vfd", 1, true));  // of a text that is shown no more
+    EXPECT_FALSE(dialogs.answer("vfd", 1, true));  // answer to a text that is no longer shown
     set("vfd", 1);
     EXPECT_EQ(dialogs.look(), Places{4});
     EXPECT_TRUE(dialogs.answer("vfd", 1, true));
@@ -114,7 +114,7 @@ TEST_F(DialogsTest, WhoKeepsThePinSetAsksOnce) {
     set("door", 1);
     dialogs.look();
     EXPECT_TRUE(dialogs.answer("door", 0, true));
-    set("door", 1);  // before the next look: its writer does so in each cycle
+    set("door", 1);  // set before the next check, as its writer does in each cycle
     EXPECT_EQ(dialogs.look(), Places{});
     set("door", 0);
     dialogs.look();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Fakes of the server and of task.
+// Replacements of the server and of task.
 #pragma once
 
 #include <map>
@@ -30,16 +30,16 @@ class FakeSockets final : public Sockets {
     std::vector<SessionId> closed;
 };
 
-/// Does each job at once.
+/// Runs each job at once.
 class Here final : public BackgroundJobs {
   public:
     void run(Job job, Reply reply) override { reply(job()); }
 };
 
-/// A task that does as the test says.
+/// A task that behaves as set by the test.
 class FakeTask {
   public:
-    /// One cycle; each command is DONE unless it is kept.
+    /// Runs one cycle; each command is DONE unless the test keeps it.
     std::vector<mailbox::CommandServer::Delivery> cycle() {
         now_ns += 1000000;
         ++status->cycle;
@@ -54,7 +54,7 @@ class FakeTask {
     }
 
     mailbox::Memory memory = mailbox::Memory::in_process();
-    std::int64_t message_ns = 0;  ///< when the next message appears
+    std::int64_t message_ns = 0;  ///< time of the next message
     mailbox::CommandServer desk{memory.segment(), mailbox::CommandServer::Rights::HERE,
                                 [this] { return message_ns; }};
     std::unique_ptr<messages::MachineStatus> status = std::make_unique<messages::MachineStatus>();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs are listed, come in pieces, whole or not at all, and nothing beside them is reached (J3).
+// Tests that programs are listed, arrive in pieces, completely or not at all, and that no other files are
+// accessible (J3).
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -130,8 +131,8 @@ TEST_F(ProgramFilesTest, APieceThatDoesNotFitOnIsRefused) {
     EXPECT_EQ(files_->write("p.ngc", 3, 9, "abc").status, 409);
     EXPECT_EQ(files_->write("p.ngc", 0, 9, "abc").status, 200);
     EXPECT_EQ(files_->write("p.ngc", 2, 9, "abc").status, 409);
-    EXPECT_EQ(files_->write("p.ngc", 3, 8, "abc").status, 409);  // of another file
-    EXPECT_EQ(files_->write("p.ngc", 8, 9, "abc").status, 400);  // longer than it said
+    EXPECT_EQ(files_->write("p.ngc", 3, 8, "abc").status, 409);  // a piece of another file
+    EXPECT_EQ(files_->write("p.ngc", 8, 9, "abc").status, 400);  // longer than announced
     EXPECT_EQ(files_->write("p.ngc", 3, 9, "defghi").status, 200);
     EXPECT_EQ(files_->read("p.ngc").body, "abcdefghi");
     EXPECT_EQ(files_->write("p.ngc", 0, ProgramFiles::MOST_BYTES + 1, "a").status, 400);
@@ -143,7 +144,7 @@ TEST_F(ProgramFilesTest, WhatIsNotWholeLeavesNothing) {
         EXPECT_EQ(files_->write(std::to_string(i) + ".ngc", 0, 9, "abc").status, 200);
     }
     EXPECT_EQ(count_entries(), ProgramFiles::MOST_UPLOADS);
-    EXPECT_EQ(files_->write("0.ngc", 3, 9, "defghi").status, 409);  // the oldest ones are abandoned
+    EXPECT_EQ(files_->write("0.ngc", 3, 9, "defghi").status, 409);  // the oldest uploads are abandoned
     EXPECT_TRUE(listed().empty());
     files_.reset();
     EXPECT_EQ(count_entries(), 0U);
@@ -156,7 +157,7 @@ TEST_F(ProgramFilesTest, RemovesUploadsOfADeadServerAndNothingElse) {
         upload = entry.path().filename().string();
     }
     ASSERT_TRUE(upload.starts_with(".p.ngc.millwright-"));
-    const auto with_last = [&upload](std::size_t n) {  // another name of the same form
+    const auto with_last = [&upload](std::size_t n) {  // another name of the same length
         std::string letters = "abcd";
         std::erase(letters, upload.back());
         return upload.substr(0, upload.size() - 1) + letters[n];

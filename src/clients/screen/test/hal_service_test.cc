@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL as screens see it, of a machine under the virtual clock (B7, J3).
+// Tests HAL for screens with a machine under the virtual clock (B7, J3).
 #include <nlohmann/json.hpp>
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ constexpr const char *SIGGEN = "loadrt siggen\naddf siggen.0.update t\nsetp sigg
 class HalDeskTest : public testing::Test {
   protected:
     HalDeskTest() : desk([this] { return connect(); }) {}
-    /// The bench keeps its host; the desk gets a second handle on it.
+    /// The bench keeps its host; the service gets a second handle for it.
     Result<std::unique_ptr<hal::Host>> connect() {
         if (!up) {
             return fail("no machine is running");
@@ -157,7 +157,7 @@ TEST_F(HalDeskTest, RecordsAroundATrigger) {
     EXPECT_EQ(record["times_s"][10], 0.0);
     EXPECT_EQ(desk.scope("DELETE", "").status, 200);
     EXPECT_EQ(state(), "CLOSED");
-    EXPECT_EQ(bench.hal().threads().list()[0].functions.size(), 1U);  // siggen alone
+    EXPECT_EQ(bench.hal().threads().list()[0].functions.size(), 1U);  // only siggen
 }
 
 TEST_F(HalDeskTest, ARecordThatWaitsIsTriggeredByHandOrReplaced) {

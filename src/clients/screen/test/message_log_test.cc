@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// [DISPLAY]LOG_FILE (J1).
+// Tests [DISPLAY]LOG_FILE (J1).
 #include <unistd.h>
 
 #include <filesystem>

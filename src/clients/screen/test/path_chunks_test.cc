@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A path in chunks: read back by the words of docs/reference/api.md, it is the program's (J3).
+// Decodes a path from its chunks by docs/reference/api.md, and compares it with the program (J3).
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -163,7 +163,7 @@ TEST(PathChunks, AnArcIsChordsNearItsCircle) {
         for (std::size_t i = 1; i < points.size(); ++i) {
             const double x = points[i].place[0] - 10, y = points[i].place[1] - 5;
             const double x0 = points[i - 1].place[0] - 10, y0 = points[i - 1].place[1] - 5;
-            const double rounding = 4e-5;  // of a float at 100
+            const double rounding = 4e-5;  // rounding of a float at 100
             EXPECT_NEAR(std::hypot(x, y), radius, rounding);
             EXPECT_GT(std::hypot((x + x0) / 2, (y + y0) / 2), radius - PathChunks::DEVIATION_MM - rounding);
             turned += std::atan2(x0 * y - y0 * x, x0 * x + y0 * y);

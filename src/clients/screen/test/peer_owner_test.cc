@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which user has opened a connection on this computer (issue 37).
+// Tests which user has opened a connection on this computer (issue 37).
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
 #include <sys/resource.h>
@@ -80,7 +80,7 @@ class PeerOwnerOfASocket : public testing::Test {
         EXPECT_EQ(::listen(listener, 4), 0);
     }
     ~PeerOwnerOfASocket() override { ::close(listener); }
-    /// Connects; -1 where that fails.
+    /// Connects; -1 on failure.
     int connect() const {
         const Endpoint server = end_of(listener, true);
         sockaddr_in place{};

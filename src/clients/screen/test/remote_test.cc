@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The way in from other computers, over real sockets: TLS, tokens, names, and what is kept for this computer
+// Tests the port for other computers, over real sockets: TLS, tokens, names, and reserves for this computer
 // (J3).
 #include <arpa/inet.h>
 #include <openssl/ssl.h>
@@ -158,7 +158,7 @@ TEST_F(RemoteTest, OnlyATokenOpensIt) {
         EXPECT_EQ(ask(path, "").substr(0, 3), "401") << path;
         EXPECT_EQ(ask(path, bearer("wrong")).substr(0, 3), "401") << path;
     }
-    EXPECT_EQ(ask("/", ""), "200\n/ by ");  // the screen, which requests the token
+    EXPECT_EQ(ask("/", ""), "200\n/ by ");  // the screen, which asks for the token
     EXPECT_EQ(ask("/api/login", ""), "200\n{\"role\":\"\",\"protection\":\"tls\"}");
 }
 

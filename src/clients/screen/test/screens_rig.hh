@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Screens with a task and a server that do as the test says, in virtual time.
+// Screens with a task and a server controlled by the test, in virtual time.
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ class ScreensTest : public testing::Test {
         now_ns += 1000 * MS;
         task.message_ns = now_ns;
     }
-    /// Time continues in steps of a tick; task cycles between them.
+    /// Advances the time in steps of a tick, with task cycles between them.
     std::vector<mailbox::CommandServer::Delivery> go(std::int64_t ms) {
         std::vector<mailbox::CommandServer::Delivery> taken;
         for (const std::int64_t end = now_ns + ms * MS; now_ns < end;) {

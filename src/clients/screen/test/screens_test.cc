@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The protocol of /api/socket, with a task and a server that do as the test says (J3).
+// Tests the protocol of /api/socket, with a task and a server controlled by the test (J3).
 #include <deque>
 
 #include <gtest/gtest.h>
@@ -109,8 +109,8 @@ TEST_F(ScreensTest, ACommandIsDoneBehindAStatusThatShowsItsEffect) {
     for (int n = 1; n <= 7; ++n) {
         command(1, n, "SetState", R"("state":"ESTOP_RESET")");
         go(10);
-        task.status->joints[0].pos_cmd = n;  // the effect, in the cycle behind the outcome
-        go(20);                              // not that of the next status for all
+        task.status->joints[0].pos_cmd = n;  // the effect, in the cycle after the outcome
+        go(20);                              // not the time of the next status for all
         bool is_shown = false, is_done = false;
         for (const Json &one : sockets.take(1)) {
             const Json joints = one.value("status", Json::object()).value("joints", Json::object());
@@ -121,7 +121,7 @@ TEST_F(ScreensTest, ACommandIsDoneBehindAStatusThatShowsItsEffect) {
             }
         }
         EXPECT_TRUE(is_done) << n;
-        go(70 + 10 * n);  // another time before the next status
+        go(70 + 10 * n);  // a different time before the next status
     }
 }
 
@@ -187,7 +187,7 @@ TEST_F(ScreensTest, WhatAConnectionJogsStopsWithIt) {
     EXPECT_EQ(go(20).size(), 5U);
     screens->closed(1);
     const auto stops = go(20);
-    ASSERT_EQ(stops.size(), 1U);  // joint 1 is jogged by the other one now
+    ASSERT_EQ(stops.size(), 1U);  // the other screen now jogs joint 1
     const auto *stop = std::get_if<messages::JogStop>(&stops[0].command);
     ASSERT_NE(stop, nullptr);
     EXPECT_TRUE(stop->isJoint);
@@ -212,7 +212,7 @@ TEST_F(ScreensTest, AScreenOfAnotherUserSeesStatusAndStopsTheMachine) {
 }
 
 TEST_F(ScreensTest, AScreenWithoutAPlaceStopsTheMachine) {
-    std::deque<client::Client> others;  // also before the server is there
+    std::deque<client::Client> others;  // also before the server is started
     for (auto one = client::Client::join(task.memory.segment()); one.has_value();
          one = client::Client::join(task.memory.segment())) {
         others.push_back(std::move(*one));
@@ -252,7 +252,7 @@ TEST_F(ScreensTest, AJogThatNothingWouldEndIsRefused) {
     EXPECT_EQ(outcomes[0]["outcome"]["progress"], "REFUSED");
     EXPECT_NE(outcomes[0]["outcome"]["reason"].get<std::string>().find("lease"), std::string::npos);
     screens->closed(1);
-    EXPECT_TRUE(go(20).empty());  // it jogs nothing
+    EXPECT_TRUE(go(20).empty());  // it has no jog
 }
 
 TEST_F(ScreensTest, StopsAreNeverLimited) {
@@ -313,7 +313,7 @@ TEST_F(ScreensTest, AScreenThatConnectsLaterIsToldHowOldMessagesAre) {
 }
 
 TEST_F(ScreensTest, AServerThatIsStartedAgainShowsTheLastMessagesWithTheirTime) {
-    client::Viewer other(task.memory.segment());  // a client of Python
+    client::Viewer other(task.memory.segment());  // a Python client
     const auto read_all = [&other] {
         while (other.next_message().has_value()) {
         }
@@ -445,7 +445,7 @@ TEST_F(ScreensTest, ALeaseCountsFromWhenItWasAskedFor) {
 
 TEST(Lateness, FollowsClocksThatDriftApart) {
     Lateness lateness;
-    // The sender's clock loses 100 parts in a million, for an hour.
+    // The sender's clock loses 100 parts per million, for an hour.
     double worst_ms = 0;
     for (std::int64_t ms = 0; ms < 3600000; ms += 100) {
         worst_ms = std::max(worst_ms, lateness.of(static_cast<double>(ms) * 0.9999, ms * MS));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A server, what it asks, and browsers that meet it byte by byte over a socket of the loopback.
+// A server, its requests, and browsers that connect over a loopback socket, byte by byte.
 #pragma once
 
 #include <fcntl.h>
@@ -23,7 +23,7 @@ namespace mw::screen::test {
 
 using std::chrono::milliseconds;
 
-/// Answers with what it was asked; a socket gets its own texts back.
+/// Answers with the request; a socket receives its own texts.
 class Echo final : public Application {
   public:
     void answer(const Request &request, Reply reply) override {
@@ -65,7 +65,7 @@ class Echo final : public Application {
     Reply later;
 };
 
-/// Counts what is read of it.
+/// Counts the bytes read from it.
 class LargeFile final : public BodySource {
   public:
     LargeFile(std::uint64_t size, std::uint64_t &read) : size_(size), left_(size), read_(read) {}
@@ -97,13 +97,13 @@ class Peer {
     Peer(const Peer &) = delete;
     Peer &operator=(const Peer &) = delete;
 
-    /// As much as goes; false: the other side is gone.
+    /// Writes as much as possible; false if the peer has disconnected.
     bool write(std::string &bytes) const {
         const ssize_t sent = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
         bytes.erase(0, sent > 0 ? static_cast<std::size_t>(sent) : 0);
         return sent >= 0 || errno == EAGAIN || errno == ENOTCONN || errno == EINPROGRESS;
     }
-    /// Takes what is there.
+    /// Reads the available bytes.
     void read() {
         char bytes[65536];
         ssize_t got = 0;
@@ -135,7 +135,7 @@ class ServerTest : public testing::Test {
         }
         return isDone();
     }
-    /// The server knows of sockets a little after their peers have its answer.
+    /// The server registers sockets slightly after their peers have received its answer.
     bool areOpened(std::size_t count) {
         return run_until([&] { return echo.open.size() == count; });
     }
@@ -143,7 +143,7 @@ class ServerTest : public testing::Test {
     void write(Peer &peer, std::string bytes) {
         run_until([&] { return !peer.write(bytes) || bytes.empty(); });
     }
-    /// All of the answer that comes until `end` is in it or the connection closes.
+    /// The bytes of the answer until they contain `end` or the connection closes.
     std::string ask(Peer &peer, const std::string &bytes, const std::string &end) {
         peer.received.clear();
         write(peer, bytes);

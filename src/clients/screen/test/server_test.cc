@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The server as a browser meets it, over a socket of the loopback: requests, limits, frames (J3).
+// Tests the server over a loopback socket: requests, limits, frames (J3).
 #include <fcntl.h>
 
 #include <random>
@@ -175,7 +175,7 @@ TEST_F(ServerTest, ASocketCarriesTextsBothWays) {
     Peer peer(server->port());
     const std::string head = ask(peer, upgrade(), "\r\n\r\n");
     EXPECT_TRUE(head.starts_with("HTTP/1.1 101")) << head;
-    EXPECT_NE(head.find("s3pPLMBiTxaQ9kYGzzhZRbK+xOo="), std::string::npos);  // of RFC 6455
+    EXPECT_NE(head.find("s3pPLMBiTxaQ9kYGzzhZRbK+xOo="), std::string::npos);  // example of RFC 6455
     ASSERT_TRUE(areOpened(1));
     EXPECT_EQ(ask(peer, frame("hello"), "hello"), "\x81\x05hello");
     EXPECT_EQ(ask(peer, frame("a", 0x01) + frame("bc", 0x80), "abc"), "\x81\x03"
@@ -311,7 +311,7 @@ TEST_F(ServerTest, ItListensToThisComputerAlone) {
     EXPECT_EQ(other.received, "");
 }
 
-/// Those of the process that are bound to a port, and do not end when it becomes another program.
+/// Descriptors of the process that are bound to a port and remain open in a started program.
 int count_inherited(int port) {
     int found = 0;
     for (int fd = 0; fd < 1024; ++fd) {
@@ -339,7 +339,7 @@ TEST_F(ServerTest, WhoNeverEndsHisRequestIsCutOff) {
     listen(limits);
     Peer slow(server->port());
     write(slow, "GET /x HTTP/1.1\r\nHost: ");
-    EXPECT_EQ(status_of(get("/x")), "HTTP/1.1 200 OK");  // no one waits for it
+    EXPECT_EQ(status_of(get("/x")), "HTTP/1.1 200 OK");  // nobody waits for the answer
     EXPECT_TRUE(run_until([&] {
         slow.read();
         return slow.isClosed;
@@ -393,7 +393,7 @@ TEST_F(ServerTest, ABrokenFrameEndsThoughThePeerStays) {
     EXPECT_TRUE(run_until([&] { return echo.ended.size() == 1; }));
 }
 
-/// Bytes with a valid beginning and an invalid rest.
+/// Data with a valid beginning and an invalid rest.
 TEST_F(ServerTest, AnythingMayComeOverAConnection) {
     listen();
     std::mt19937_64 random(17);

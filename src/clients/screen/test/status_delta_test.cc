@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A browser gets the whole status from the deltas (J3).
+// Tests that a browser can reconstruct the status from the deltas (J3).
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 using Random = std::mt19937_64;
 
-/// As docs/reference/api.md describes it for browsers.
+/// Merges as docs/reference/api.md describes it for browsers.
 void merge(Json &into, const Json &delta) {
     for (const auto &[key, value] : delta.items()) {
         if (into.is_array()) {
@@ -33,7 +33,7 @@ void merge(Json &into, const Json &delta) {
 
 void change_value(const messages::Type &type, void *at, Random &random);
 
-/// Each field with a chance of one in `rarely`.
+/// Changes each field with a probability of one in `rarely`.
 void change(const messages::Declaration &declaration, void *object, Random &random, unsigned rarely) {
     for (const messages::Field &field : declaration.fields) {
         void *at = field.at(object);
@@ -117,12 +117,12 @@ TEST(StatusDelta, PartsThatWereReadAreEnough) {
             change(declaration, status.get(), random, 1U << random() % 10);
             published->write(*status, published->changed(*status, messages::PublishedStatus::ALL));
             if (random() % 3 == 0) {
-                continue;  // read later
+                continue;  // the part is read later
             }
             ASSERT_TRUE(published->read(*copy));
             unread |= copy->fresh;
             if (random() % 3 == 0) {
-                continue;  // told later
+                continue;  // the change is sent later
             }
             const std::string text = delta.next(copy->value, unread);
             unread = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A client of TLS whose records lie in `out` before they are sent: they can be delayed, cut and spoiled. Also
-// of tests/fuzz/fuzz_web_tls.cc.
+// A TLS client that collects its records in `out`, where they can be delayed, cut and corrupted. Also used by
+// tests/fuzz/fuzz_web_tls.cc.
 #pragma once
 
 #include <arpa/inet.h>
@@ -21,8 +21,8 @@ class TlsPeer {
   public:
     struct Wish {
         int version = 0;               ///< TLS1_2_VERSION; 0: the newest
-        const char *groups = nullptr;  ///< as SSL_set1_groups_list() has them
-        bool hasTls = true;            ///< false: only `out` is sent and `taken` counted
+        const char *groups = nullptr;  ///< in the format of SSL_set1_groups_list()
+        bool hasTls = true;            ///< false: only sends `out` and counts `taken`
     };
 
     TlsPeer(int port, const Wish &wish)
@@ -56,7 +56,7 @@ class TlsPeer {
     bool isUp() const { return SSL_is_init_finished(tls_) == 1; }
     SSL *tls() { return tls_; }
 
-    /// Takes what has come, and lays what is to be said to it into `out`.
+    /// Processes received data, and writes the next data to `out`.
     void think() {
         char some[16384];
         ssize_t got = 0;
@@ -83,7 +83,7 @@ class TlsPeer {
         }
         think();
     }
-    /// Up to so many bytes of `out`, as they are now.
+    /// Sends at most this many bytes of `out`.
     void send(std::size_t most = std::string::npos) {
         const std::size_t size = std::min(most, out.size());
         const ssize_t sent = ::send(fd_, out.data(), size, MSG_NOSIGNAL);
@@ -92,7 +92,7 @@ class TlsPeer {
     }
 
     std::string out, received;
-    std::size_t taken = 0;  ///< bytes that have come
+    std::size_t taken = 0;  ///< number of received bytes
     bool isClosed = false;
 
   private:

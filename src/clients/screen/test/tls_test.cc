@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Invalid input at the port for other computers (J3): records in pieces, spoiled, none at all;
-// greetings that never end. None of it is answered as valid, delays other clients, or is
-// kept.
+// Tests invalid input at the port for other computers (J3): records in pieces, corrupted records, no records,
+// handshakes that never end. Such input is not accepted, does not delay other clients, and uses no lasting
+// memory.
 #include <filesystem>
 #include <functional>
 #include <vector>
@@ -65,7 +65,7 @@ class TlsTest : public testing::Test {
         }
         return isDone();
     }
-    /// All that is to be said is sent, in pieces of `size`, until `isDone`.
+    /// Sends all data in pieces of `size`, until `isDone`.
     bool talk(TlsPeer &peer, const std::function<bool()> &isDone, std::size_t size = std::string::npos) {
         return run_until([&] {
                    peer.think();
@@ -81,7 +81,7 @@ class TlsTest : public testing::Test {
         return "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(server->remote_port()) +
                "\r\nAuthorization: Bearer " + TOKEN + "\r\n" + more + "\r\n";
     }
-    /// A valid client is answered.
+    /// True if a valid client receives an answer.
     bool isServed(const TlsPeer::Wish &wish = {}) {
         TlsPeer peer(server->remote_port(), wish);
         if (!greet(peer)) {
@@ -90,7 +90,7 @@ class TlsTest : public testing::Test {
         peer.say(request("/api/here", "Connection: close\r\n"));
         return talk(peer, [&] { return peer.received.ends_with("/api/here"); });
     }
-    /// The server ends it, without a word of HTTP.
+    /// True if the server closes the connection without an HTTP answer.
     bool isTurnedAway(TlsPeer &peer) {
         return run_until([&] {
                    peer.think();
@@ -117,7 +117,7 @@ TEST_F(TlsTest, RecordsMayComeInAnyPieces) {
 }
 
 TEST_F(TlsTest, WhatIsNoGreetingEndsIt) {
-    const std::string old_greeting("\x80\x2e\x01\x00\x02\x00\x15\x00\x00\x00\x10", 11);  // of SSL 2
+    const std::string old_greeting("\x80\x2e\x01\x00\x02\x00\x15\x00\x00\x00\x10", 11);  // handshake of SSL 2
     const std::string tls_1_0("\x16\x03\x01\x00\x2d\x01\x00\x00\x29\x03\x01", 11);
     const std::string ends = std::string(32, 'r') + std::string("\x00\x00\x02\x00\x2f\x01\x00", 7);
     const std::string long_record("\x16\x03\x01\xff\xff", 5), alert("\x15\x03\x01\x00\x02\x02\x28", 7);
@@ -149,7 +149,7 @@ TEST_F(TlsTest, AGreetingThatIsCutAnywhereLeavesNothingBehind) {
                 return peer.isUp();
             }));
         }
-        for (std::size_t end = 0; end < whole; end += 7) {  // many more than there are places
+        for (std::size_t end = 0; end < whole; end += 7) {  // many more than the number of slots
             TlsPeer peer(server->remote_port(), {.version = version});
             std::size_t left = end;
             run_until(
@@ -173,7 +173,7 @@ TEST_F(TlsTest, ASpoiledByteEndsIt) {
             ASSERT_TRUE(greet(peer));
             const std::string asked = request("/api/machine");
             peer.say(asked);
-            ASSERT_GT(peer.out.size(), asked.size() + 20);  // its head and its seal
+            ASSERT_GT(peer.out.size(), asked.size() + 20);  // its head and its tag
             peer.out[at] = static_cast<char>(peer.out[at] ^ 1);
             peer.send();
             EXPECT_TRUE(isTurnedAway(peer)) << at;
@@ -185,7 +185,7 @@ TEST_F(TlsTest, ASpoiledByteEndsIt) {
 TEST_F(TlsTest, GreetingsThatNeverEndAreEnded) {
     limits.greeting_time = milliseconds(100);
     listen();
-    TlsPeer own(server->port(), {.hasTls = false});  // a screen of this computer, which speaks no TLS
+    TlsPeer own(server->port(), {.hasTls = false});  // a screen on this computer, which does not use TLS
     own.out = "GET /api/socket HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(server->port()) +
               "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
@@ -196,7 +196,7 @@ TEST_F(TlsTest, GreetingsThatNeverEndAreEnded) {
         slow.back()->think();
     }
     TlsPeer late(server->remote_port(), {});
-    EXPECT_TRUE(isTurnedAway(late));  // all places are taken
+    EXPECT_TRUE(isTurnedAway(late));  // all slots are in use
     const std::size_t before = own.taken;
     const bool are_ended = run_until([&] {
         own.out = std::string("\x81\x81\0\0\0\0x", 7);
@@ -204,14 +204,14 @@ TEST_F(TlsTest, GreetingsThatNeverEndAreEnded) {
         own.think();
         int ended = 0;
         for (const auto &one : slow) {
-            one->send(1);  // never silent, never done
+            one->send(1);  // sends one byte at a time without end
             one->think();
             ended += one->isClosed ? 1 : 0;
         }
         return ended == static_cast<int>(slow.size());
     });
     EXPECT_TRUE(are_ended);
-    EXPECT_GT(own.taken, before + 3 * 20);  // three bytes for each renewal: it was served meanwhile
+    EXPECT_GT(own.taken, before + 3 * 20);  // three bytes for each renewal: it was served in this time
     EXPECT_TRUE(isServed());
 }
 
@@ -227,7 +227,7 @@ TEST_F(TlsTest, NoKeysAreMadeAnewAtAPeersWish) {
     ASSERT_EQ(SSL_renegotiate(peer.tls()), 1);
     SSL_do_handshake(peer.tls());
     peer.think();
-    EXPECT_FALSE(peer.out.empty());  // it has asked for it
+    EXPECT_FALSE(peer.out.empty());  // it has requested the key update
     run_until(
         [&] {
             peer.send();
@@ -278,7 +278,7 @@ TEST_F(TlsTest, SoManyGreetingsAreHeardInASecond) {
     listen();
     const auto begin = std::chrono::steady_clock::now();
     for (int i = 0; i < 8; ++i) {
-        EXPECT_TRUE(isServed()) << i;  // none is turned away: they wait
+        EXPECT_TRUE(isServed()) << i;  // none is rejected; they wait
     }
     EXPECT_GE(std::chrono::steady_clock::now() - begin, milliseconds(200));
 }

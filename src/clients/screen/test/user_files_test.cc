@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Small files that screens keep (J1, J3).
+// Tests small files that screens keep (J1, J3).
 #include <unistd.h>
 
 #include <filesystem>

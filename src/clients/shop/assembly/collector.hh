@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Keeps the host application connected while the store works, and passes batches between them.
+// Keeps the host application connected while the store works, and passes batches to the store.
 #pragma once
 
 #include <functional>
@@ -14,17 +14,18 @@ namespace mw::shop {
 
 struct CollectorSettings {
     std::size_t brokers = 1;
-    double retry_s = 1;    ///< between two attempts to connect
-    double answer_s = 10;  ///< for a connection
-    /// A store that takes longer for a batch is away: machines keep their values until it is back.
+    double retry_s = 1;    ///< interval between two attempts to connect
+    double answer_s = 10;  ///< timeout of a connection
+    /// A store that takes longer for a batch counts as unavailable. Machines then keep their values until it
+    /// is back.
     double store_s = 5;
-    double batch_s = 0.1;                 ///< between two batches
-    std::size_t most_readings = 500'000;  ///< in memory; more than that: the store is too slow
+    double batch_s = 0.1;                 ///< interval between two batches
+    std::size_t most_readings = 500'000;  ///< maximum in memory; above it the store is too slow
 };
 
-/// The law of this part: what is not committed in the database has no receipt, and what has no receipt is
-/// sent again by the machine. So the collector keeps nothing: when the store or the broker is lost it forgets
-/// everything, and is offline until both are back. One thread.
+/// Values that are not committed in the database get no receipt, and the machine sends values without a
+/// receipt again. So the collector stores nothing itself: when the store or the broker is lost it drops
+/// everything, and is offline until both are available. One thread.
 class Collector {
   public:
     using Moment = HostApplication::Moment;

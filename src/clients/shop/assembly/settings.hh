@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the INI file of a shop sets.
+// The settings in the INI file of a shop.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ namespace mw::shop {
 
 struct PagePort {
     int port = 0;
-    std::string address;  ///< empty: this computer only
+    std::string address;  ///< empty: only this computer
     std::vector<std::string> names;
 };
 
@@ -29,7 +29,7 @@ struct Settings {
     NotifierSettings notify;
 };
 
-/// Reports each problem with file, line and column; nothing when there are any.
+/// Reports each problem with file, line and column; returns nothing if there are problems.
 std::optional<Settings> read_settings(const ini::IniFile &file, diagnostics::Sink &sink);
 
 }  // namespace mw::shop

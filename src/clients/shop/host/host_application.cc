@@ -15,15 +15,15 @@ namespace {
 
 constexpr std::string_view NAMESPACE = "spBv1.0/";
 constexpr const char *REBIRTH = "Node Control/Rebirth";
-/// Metrics of the protocol, not of a machine.
+/// True for metrics of the protocol, which do not belong to a machine.
 bool isOfProtocol(std::string_view metric) {
     return metric == "bdSeq" || metric.starts_with("Node Control/") || metric.starts_with("Device Control/");
 }
-/// Between two passes over the receipts that are due. A step is taken for each message.
+/// Interval between two passes over the due receipts, because a step is executed for each message.
 constexpr double RECEIPT_PERIOD_S = 0.05;
 /// The series of such a metric.
 constexpr SeriesId NOT_STORED = ~SeriesId{0};
-/// 31 December 9999: later times are not stored.
+/// 31 December 9999; later times are not stored.
 constexpr TimeMs LAST_TIME = 253'402'214'400'000;
 
 template <class Narrow>
@@ -99,7 +99,7 @@ void HostApplication::publish_state(bool isOnline) {
 void HostApplication::connected() {
     forget();
     isOnline_ = true;
-    // The subscriptions come first: a node that sees the state sends its birth at once.
+    // Subscribes first, because a node that sees the state sends its birth at once.
     link_.subscribe(state_topic_);
     if (settings_.groups.empty()) {
         link_.subscribe(fmt::format("{}+/+/#", NAMESPACE));
@@ -132,7 +132,7 @@ void HostApplication::forget() {
 void HostApplication::take(const publish::Publication &message, const Moment &now) {
     now_ = now;
     if (message.topic == state_topic_) {
-        // The will of an earlier connection of this host may come after its state.
+        // The will of an earlier connection of this host may arrive after its state.
         const auto state = publish::read_host_state(message.payload);
         if (isOnline_ && state.has_value() && !state->isOnline) {
             publish_state(true);
@@ -197,7 +197,7 @@ void HostApplication::take_birth_of_node(Node &node, const Topic &topic, const p
 }
 
 void HostApplication::take_death_of_node(Node &node, const Topic &topic, const publish::Payload &payload) {
-    // The will of an earlier connection may come after the birth of the next one.
+    // The will of an earlier connection may arrive after the birth of the next one.
     if (node.position.birth == 0 || bdseq_of(payload) != node.position.bdseq) {
         return;
     }
@@ -210,7 +210,7 @@ void HostApplication::take_death_of_node(Node &node, const Topic &topic, const p
     node.position = {};
 }
 
-/// False: a message is missing.
+/// False if a message is missing.
 bool HostApplication::follow_sequence(Node &node, const publish::Payload &payload) {
     const bool isNext = !node.isCounted ||
                         payload.position == publish::Position{node.position.birth, node.position.count + 1};
@@ -256,7 +256,7 @@ void HostApplication::define(Device &device, const Topic &topic, const publish::
     }
 }
 
-/// Null: the birth of the device is missing.
+/// Null if the birth of the device is missing.
 const HostApplication::Metric *HostApplication::find(const Device &device,
                                                      const publish::PayloadMetric &metric) {
     if (!metric.name.empty()) {
@@ -303,11 +303,11 @@ void HostApplication::set_alive(Node &node, const MachineName &name, bool isAliv
     device.isAwaited = false;
 }
 
-/// Their deaths were among messages that were lost.
+/// Ends devices whose deaths were among lost messages.
 void HostApplication::miss_devices() {
     std::erase_if(awaited_, [this](const auto &one) {
         Node &node = nodes_[one.first];
-        // After a missing message another birth comes.
+        // After a missing message another birth follows.
         if (now_.at_s < one.second || !node.isInOrder) {
             return false;
         }
@@ -322,7 +322,7 @@ void HostApplication::miss_devices() {
 
 Batch HostApplication::take_batch() {
     if (batch_.readings.size() > settings_.batch_readings) {
-        // Receipts cover all that was received, so they come with the last part.
+        // Receipts cover all received messages, so they are part of the last batch.
         const auto end = batch_.readings.begin() + static_cast<std::ptrdiff_t>(settings_.batch_readings);
         Batch part;
         part.new_series = std::exchange(batch_.new_series, {});
@@ -348,7 +348,7 @@ void HostApplication::stored(const std::vector<NodeReceipt> &receipts) {
     }
 }
 
-/// Machines that ended while this host was away sent their death to none.
+/// Machines that ended while this host was offline sent their death without a receiver.
 void HostApplication::take_census() {
     census_s_ = census_s_.value_or(now_.at_s + settings_.census_s);
     if (!isOnline_ || isCounted_ || now_.at_s < *census_s_) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A host application of Sparkplug B 3.0: follows births, data and deaths of nodes, and turns them into
-// batches for a store. The only command that it sends is a request for a birth. Knows neither sockets nor
+// A host application of Sparkplug B 3.0: follows births, data and deaths of nodes, and converts them to
+// batches for a store. The only command that it sends is a request for a birth. It uses neither sockets nor
 // clocks.
 #pragma once
 
@@ -19,26 +19,29 @@
 namespace mw::shop {
 
 struct HostSettings {
-    std::string name;                 ///< of the host application, as PRIMARY_HOST of publishers
-    std::vector<std::string> groups;  ///< that this host collects; empty: all
-    double rebirth_s = 5;             ///< between two requests to one node
-    /// From the birth of a node to those of its devices: what was there before and is not born then has
-    /// ended.
+    std::string name;                 ///< name of the host application, as in PRIMARY_HOST of publishers
+    std::vector<std::string> groups;  ///< groups that this host collects; empty: all
+    double rebirth_s = 5;             ///< interval between two requests to one node
+    /// Time from the birth of a node to those of its devices; earlier devices that are not born in this time
+    /// have ended.
     double devices_s = 5;
-    double receipt_s = 0.5;  ///< between two receipts to one node
-    /// From the connection to the census: longer than the longest pause of a publisher between two attempts.
+    double receipt_s = 0.5;  ///< interval between two receipts to one node
+    /// Time from the connection to the census: longer than the maximum pause of a publisher between two
+    /// attempts.
     double census_s = 60;
-    /// In one batch: a database that stores it within its time limit makes progress, no matter how many wait.
+    /// Maximum in one batch: a database that stores it within its time limit makes progress, however many
+    /// readings wait.
     std::size_t batch_readings = 20'000;
 };
 
-/// A node whose messages have positions repeats what has no receipt, and a receipt is sent only for what is
-/// stored: a host that forgets everything with forget() loses nothing. Of such a node only the next message
-/// is taken: after a missing one the aliases of the last birth may be wrong, and the others come again after
-/// the birth that is requested. Of a node without positions everything is taken. One thread.
+/// A node whose messages have positions repeats messages without a receipt, and a receipt is sent only for
+/// stored messages. So a host that drops everything with forget() loses nothing. From such a node only the
+/// next message in order is accepted: after a missing message the aliases of the last birth may be wrong, and
+/// the other messages are repeated after the requested birth. From a node without positions all messages are
+/// accepted. One thread.
 class HostApplication {
   public:
-    /// Time of the day, and a time that never jumps.
+    /// Time of day, and a monotonic time.
     struct Moment {
         TimeMs utc_ms = 0;
         double at_s = 0;
@@ -47,23 +50,24 @@ class HostApplication {
 
     HostApplication(HostSettings settings, publish::BrokerLink &link, Report report);
 
-    /// What the broker sends when this host has gone: the same time as that of the next connected().
+    /// The message that the broker sends when this host is lost. It has the same time as the next
+    /// connected().
     publish::Publication will(const Moment &now);
     void connected();
-    /// Before a connection ends in order.
+    /// Called before a connection ends in an orderly way.
     void say_offline();
-    /// The connection, or the store, is lost: nodes are asked for births again.
+    /// Called when the connection or the store is lost: births are requested again from nodes.
     void forget();
 
     void take(const publish::Publication &message, const Moment &now);
-    /// Sends what is due.
+    /// Sends due messages.
     void step(const Moment &now);
 
     std::size_t waiting() const { return batch_.readings.size(); }
     bool hasBatch() const { return !batch_.isEmpty() || !unstored_.empty(); }
-    /// The oldest part of what is not stored, without receipts when there is more.
+    /// The oldest readings that are not stored; without receipts if there are more.
     Batch take_batch();
-    /// A batch is in the store.
+    /// Called when a batch is stored.
     void stored(const std::vector<NodeReceipt> &receipts);
 
   private:
@@ -97,7 +101,7 @@ class HostApplication {
     Report report_;
     std::string state_topic_;
     Moment now_;
-    double receipts_s_ = -1e9;  ///< of the next pass over receipts_
+    double receipts_s_ = -1e9;  ///< time of the next pass over receipts_
     std::optional<double> census_s_;
     bool isCounted_ = false;  ///< the census of this connection is done
     TimeMs state_at_ = 0;
@@ -106,12 +110,12 @@ class HostApplication {
     std::map<NodeName, Node> nodes_;
     std::map<std::pair<MachineName, std::string>, SeriesId> series_;
     Batch batch_;
-    std::map<NodeName, double> awaited_;    ///< nodes with awaited devices, and until when
+    std::map<NodeName, double> awaited_;    ///< nodes with awaited devices, and the end of the wait
     std::set<NodeName> unstored_;           ///< nodes with messages since the last batch
-    std::map<NodeName, Receipt> receipts_;  ///< that are due
+    std::map<NodeName, Receipt> receipts_;  ///< due receipts
 };
 
-/// A value as its type of Sparkplug is; signed numbers come as their bits.
+/// Converts a value to its Sparkplug type; signed numbers arrive as their bits.
 Value typed(const Value &value, std::uint32_t type);
 
 }  // namespace mw::shop

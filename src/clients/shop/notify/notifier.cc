@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The only file that includes libcurl.
+// Implemented with libcurl, which only this file includes.
 #include "clients/shop/notify/notifier.hh"
 
 #include <curl/curl.h>
@@ -66,10 +66,10 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-/// Text of the header Subject: encoded words of RFC 2047, each with whole characters, one a line of 76 bytes
-/// at most.
+/// Text of the header Subject: encoded words of RFC 2047 with whole characters, one per line of at most 76
+/// bytes.
 std::string encoded_words(std::string_view text) {
-    constexpr std::size_t MOST = 39;  // 52 digits
+    constexpr std::size_t MOST = 39;  // 39 bytes are 52 digits
     std::string words;
     do {
         std::size_t end = std::min(MOST, text.size());
@@ -85,7 +85,7 @@ std::string encoded_words(std::string_view text) {
     return words;
 }
 
-/// Lines of 76 digits, as RFC 2045 has them.
+/// Lines of 76 digits, as in RFC 2045.
 std::string base64_lines(std::string_view bytes) {
     constexpr std::size_t LINE = 57;
     std::string lines;
@@ -101,7 +101,7 @@ std::string duration(std::int64_t seconds) {
                           : fmt::format("{} h {} min", seconds / HOUR, seconds % HOUR / MINUTE);
 }
 
-/// As RFC 5322 has it.
+/// Date in the format of RFC 5322.
 std::string date_now() {
     return fmt::format("{:%a, %d %b %Y %H:%M:%S} +0000", fmt::gmtime(std::time(nullptr)));
 }
@@ -188,7 +188,7 @@ std::string mail_text(const NotifierSettings &settings, const Notification &what
                             duration(what.late_s), what.received,
                             what.isOver ? "The condition has ended." : "No later value has come.");
     }
-    // The same notification has the same number: a mail that comes twice can be recognised.
+    // The same notification has the same id, so a repeated mail can be recognised.
     const std::string domain =
         settings.from.substr(std::min(settings.from.find('@') + 1, settings.from.size()));
     return fmt::format("From: {}\r\nTo: {}\r\nSubject: {}\r\nDate: {}\r\nMessage-ID: <notification-{}@{}>\r\n"
@@ -221,7 +221,7 @@ Notifier::~Notifier() {
     thread_.join();
 }
 
-/// False: the end.
+/// False at the end.
 bool Notifier::wait(double seconds) {
     std::unique_lock lock(mutex_);
     return !change_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return isEnded_; });
@@ -273,7 +273,7 @@ Result<> Notifier::send_all(Database &database) {
     }
     Result<> all{};
     for (const std::string &target : targets) {
-        // A target that fails does not keep others waiting.
+        // A target that fails does not delay the other targets.
         if (auto done = send_to(database, target); !done.has_value()) {
             all = std::move(done);
         }
@@ -285,7 +285,7 @@ void Notifier::run() {
     bool isRunning = true;
     while (isRunning) {
         auto database = Database::open(database_);
-        // One collector of all that use the database sends.
+        // Only one collector of those that use the database sends.
         const auto taken =
             database.has_value()
                 ? database->ask("SELECT pg_try_advisory_lock(hashtext('millwright shop notify'))")

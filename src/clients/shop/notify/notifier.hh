@@ -25,19 +25,19 @@ struct NotifierSettings {
 
 struct Notification {
     std::string id, machine, at, source, message;
-    std::string received;     ///< when it came to this computer
+    std::string received;     ///< time when it reached this computer
     std::int64_t late_s = 0;  ///< age of the value when the machine sent it
-    bool isOver = false;      ///< the value has changed since
+    bool isOver = false;      ///< the value has changed again
 };
-/// A value that is older than that is late: a publisher tries a broker again after half a minute at most.
+/// A value above this age is late. A publisher retries a broker after at most half a minute.
 inline constexpr std::int64_t LATE_S = 60;
 
-/// Header and body, with lines as SMTP requires them. `date` as RFC 5322 has it.
+/// Header and body, with line ends for SMTP. `date` in the format of RFC 5322.
 std::string mail_text(const NotifierSettings &settings, const Notification &what, const std::string &date);
 std::string webhook_text(const Notification &what);
 
-/// A thread that reads notifications from the database. Each is sent once to each target; what fails is tried
-/// again for a day. A kill between the sending and the note of it sends it twice.
+/// A thread that reads notifications from the database. Each is sent once to each target; failed ones are
+/// retried for a day. A kill between sending and storing the result sends it twice.
 class Notifier {
   public:
     using Report = std::function<void(const std::string &)>;
@@ -60,7 +60,7 @@ class Notifier {
     std::mutex mutex_;
     std::condition_variable change_;
     bool isEnded_ = false;
-    std::string trouble_;  ///< the last that was reported
+    std::string trouble_;  ///< the last reported problem
     std::thread thread_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The only file that includes libpq.
+// Implemented with libpq, which only this file includes.
 #include "clients/shop/store/database.hh"
 
 #include <array>
@@ -78,7 +78,7 @@ Error Database::error(const char *what) const {
 }
 
 Result<Database> Database::open(const std::string &connection) {
-    // The words of the connection come last: they may set other values.
+    // The settings of the connection come last, because they may override others.
     constexpr std::array<const char *, 9> KEYS{"connect_timeout",  "keepalives_idle",  "keepalives_interval",
                                                "keepalives_count", "tcp_user_timeout", "application_name",
                                                "client_encoding",  "dbname",           nullptr};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A connection to PostgreSQL by libpq. Calls block; an error closes nothing by itself.
+// A connection to PostgreSQL with libpq. Calls block; an error does not close the connection.
 #pragma once
 
 #include <cstdint>
@@ -17,18 +17,18 @@ struct pg_result;
 
 namespace mw::shop {
 
-/// Rows of an answer as text.
+/// Rows of a result as text.
 class Rows {
   public:
     explicit Rows(pg_result *result);
     int count() const;
     int columns() const;
-    /// Rows that an INSERT without WITH has written.
+    /// Number of rows written by an INSERT without WITH.
     std::size_t written() const;
     /// Nothing for NULL.
     std::optional<std::string> text(int row, int column) const;
     std::string name(int column) const;
-    /// For libpq.
+    /// For calls of libpq.
     pg_result *get() const { return result_.get(); }
 
   private:
@@ -45,7 +45,7 @@ struct Parameter {
 /// One-dimensional arrays in the binary form of PostgreSQL.
 class ArrayWriter {
   public:
-    /// `element_type`: its OID. `count` elements follow.
+    /// `element_type` is its OID; `count` elements follow.
     ArrayWriter(std::uint32_t element_type, std::size_t count, bool hasNulls);
     void null();
     void int32(std::int32_t value);
@@ -66,14 +66,14 @@ inline constexpr std::uint32_t BOOL = 16, INT8 = 20, INT4 = 23, TEXT = 25, FLOAT
 
 class Database {
   public:
-    /// `connection` as libpq takes it: "host=/run/postgresql dbname=shop", or a URI. Waits for 5 s at most,
-    /// and notices a computer that has gone in about 30 s.
+    /// `connection` in the form of libpq: "host=/run/postgresql dbname=shop", or a URI. Waits at most 5 s,
+    /// and detects a lost computer in about 30 s.
     static Result<Database> open(const std::string &connection);
     Database(Database &&other) noexcept = default;
     Database &operator=(Database &&other) noexcept = default;
     ~Database() = default;
 
-    /// Several statements without parameters.
+    /// Runs several statements without parameters.
     Result<> run(const std::string &sql);
     Result<Rows> ask(const std::string &sql, std::span<const Parameter> parameters = {});
 

@@ -17,9 +17,9 @@ namespace mw::shop {
 namespace {
 
 constexpr std::int64_t MS_PER_DAY = 86'400'000;
-/// 1 January 2000 in milliseconds: PostgreSQL counts from there.
+/// 1 January 2000 in milliseconds, the epoch of PostgreSQL.
 constexpr std::int64_t EPOCH_MS = 946'684'800'000;
-/// Each day from 2020 to 2099 has its own partition; earlier and later ones have one each.
+/// Each day from 2020 to 2099 has its own partition; earlier and later days have one partition each.
 constexpr std::int64_t FIRST_DAY = 18'262, END_DAY = 47'482;
 
 std::int64_t timestamp(TimeMs at) {
@@ -42,7 +42,7 @@ Parameter words(const std::string &text) {
     return {text, false, false};
 }
 
-/// A value from which notifications or runs of programs may follow: it is written by WRITE_EVENTS.
+/// True for a value from which notifications or runs of programs may follow; WRITE_EVENTS writes it.
 bool isEvent(std::string_view metric) {
     constexpr std::array<std::string_view, 4> JOB_METRICS{"Execution", "Mode", "Program/Path",
                                                           "Program/Ended"};
@@ -53,10 +53,10 @@ constexpr const char *WRITE_READINGS =
     "INSERT INTO reading (metric, at, number, whole, text) "
     "SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], $5::text[]) "
     "ON CONFLICT DO NOTHING";
-/// Those whose time another value of the metric has, which differs.
+/// Readings whose metric already has a different value at the same time.
 constexpr const char *WRITE_SAME_TIMES =
     "SELECT count(*) FROM add_readings($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], $5::text[])";
-/// Only a row that was not there is reported to people. A trigger calculates runs from job_reading.
+/// Only a new row is reported to persons. A trigger calculates runs from job_reading.
 constexpr const char *WRITE_EVENTS =
     "WITH fresh AS (SELECT * FROM add_readings($1::int[], $2::timestamptz[], $3::float8[], $4::bigint[], "
     "$5::text[])), "
@@ -71,7 +71,7 @@ constexpr const char *WRITE_EVENTS =
     "SELECT machine, at, name, text, ms * interval '1 ms' FROM named "
     "WHERE text <> '' AND (name LIKE 'Alarms/%' OR (name = 'Execution' AND text = 'PROGRAM_STOPPED')) "
     "ON CONFLICT DO NOTHING";
-/// In the order in which they came. A clock that is wrong is reported once a day.
+/// Presences in the order of arrival. A wrong clock is reported once a day.
 constexpr const char *WRITE_PRESENCES =
     "WITH given AS (SELECT * FROM unnest($1::int[], $2::timestamptz[], $3::bool[], $4::bigint[]) WITH "
     "ORDINALITY "
@@ -110,7 +110,7 @@ class ReadingArrays {
 }  // namespace
 
 Result<> migrate(Database &database) {
-    // One process at a time; another one waits, and finds nothing to do.
+    // One process at a time; a second process waits, and then finds nothing to do.
     auto done = database.run("BEGIN; SELECT pg_advisory_xact_lock(hashtext('millwright shop schema')); "
                              "CREATE TABLE IF NOT EXISTS schema_step (number integer PRIMARY KEY, "
                              "at timestamptz NOT NULL DEFAULT now())");
@@ -169,7 +169,7 @@ Result<> Store::lock() {
 Result<> Store::store(const Batch &batch, const std::vector<Series> &series) {
     auto done = write(batch, series);
     if (!done.has_value()) {
-        // The connection may be gone, too: then the server has rolled back.
+        // The connection may be lost, too; then the server has rolled back.
         static_cast<void>(database_.run("ROLLBACK"));
     }
     return done;
@@ -190,7 +190,7 @@ Result<int> Store::machine_id(const MachineName &name) {
         return known->second;
     }
     const std::array parameters{words(name.node.group), words(name.node.node), words(name.device)};
-    // An update that changes nothing returns the row that is there.
+    // An update without a change returns the existing row.
     const auto row =
         database_.ask("INSERT INTO machine (grp, node, device) VALUES ($1, $2, $3) "
                       "ON CONFLICT (grp, node, device) DO UPDATE SET grp = machine.grp RETURNING id",
@@ -275,7 +275,7 @@ void ReadingArrays::add(std::int32_t metric, const Reading &reading) {
     metrics_.int32(metric);
     times_.int64(timestamp(reading.at));
     ages_.int64(static_cast<std::int64_t>(reading.late_ms));
-    // Of the three columns one has the value.
+    // One of the three columns contains the value.
     std::optional<double> number;
     std::optional<std::int64_t> whole;
     std::optional<std::string> text;
@@ -379,7 +379,7 @@ Result<> Store::write_census(const Census &census) {
 }
 
 Result<> Store::tend() {
-    // Each hour the days that are written are noted again.
+    // The written days are collected again each hour.
     days_.clear();
     auto done = database_.run("BEGIN");
     const std::int64_t day = today();

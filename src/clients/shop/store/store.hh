@@ -14,25 +14,25 @@
 namespace mw::shop {
 
 struct StoreSettings {
-    std::string database;  ///< connection, as libpq takes it
-    /// Two collectors of one name never write at the same time: the second waits.
+    std::string database;  ///< connection string for libpq
+    /// Two collectors with one name never write at the same time: the second one waits.
     std::string collector;
-    int keep_days = 0;  ///< older days are removed; 0: none
+    int keep_days = 0;  ///< older days are removed; 0: never
 };
 
-/// Creates and updates the tables. All steps that are missing, or none.
+/// Creates and updates the tables: all missing steps, or none.
 Result<> migrate(Database &database);
 
 /// One thread.
 class Store {
   public:
-    /// Connects, updates the tables, and takes the name of the collector.
+    /// Connects, updates the tables, and takes the lock of the collector's name.
     static Result<Store> open(const StoreSettings &settings);
 
-    /// All of the batch or nothing; what is stored already is not stored again. `series`: all that are known,
-    /// by their numbers. After an error the store is of no more use.
+    /// Stores the complete batch or nothing; values that are already stored are not repeated. `series`: all
+    /// known series, by number. After an error the store cannot be used further.
     Result<> store(const Batch &batch, const std::vector<Series> &series);
-    /// Removes days that are too old, and creates those to come. Once an hour, and at the start.
+    /// Removes days that are too old, and creates future days. Called once in each hour, and at the start.
     Result<> tend();
 
   private:
@@ -51,8 +51,8 @@ class Store {
     Database database_;
     StoreSettings settings_;
     std::map<MachineName, int> machines_;
-    std::vector<std::int32_t> ids_;  ///< of metrics, by the number of their series; 0: not known
-    std::set<std::int64_t> days_;    ///< since 1970, that have a partition
+    std::vector<std::int32_t> ids_;  ///< ids of metrics, by the number of their series; 0: not known
+    std::set<std::int64_t> days_;    ///< days since 1970 that have a partition
 };
 
 }  // namespace mw::shop

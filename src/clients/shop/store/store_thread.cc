@@ -59,7 +59,7 @@ void StoreThread::set_trouble(const std::string &what) {
     }
 }
 
-/// While the store works.
+/// Writes batches while the store works.
 void StoreThread::write(Store &store, std::unique_lock<std::mutex> &lock) {
     auto tended = std::chrono::steady_clock::now();
     while (!isEnded_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The store in a separate thread: a database that is slow or away stops nothing else.
+// The store in a separate thread, so that a slow or missing database does not block anything else.
 #pragma once
 
 #include <condition_variable>
@@ -14,7 +14,7 @@
 
 namespace mw::shop {
 
-/// Any thread, except that one thread gives and takes.
+/// Any thread, but only one thread calls give and take.
 class StoreThread {
   public:
     using Report = std::function<void(const std::string &)>;
@@ -26,11 +26,11 @@ class StoreThread {
 
     enum class State : std::uint8_t { AWAY, IDLE, BUSY };
     State state() const;
-    /// Counts how often the store was opened: what was given before and not stored is gone.
+    /// Number of times the store was opened. Batches that were given before and not stored are lost.
     int opened() const;
-    /// In the state IDLE. Series are kept also while the store is away.
+    /// Call it in the state IDLE. Series are kept also while the store is unavailable.
     void give(Batch batch);
-    /// Receipts of a batch that is stored.
+    /// Receipts of a stored batch.
     std::optional<std::vector<NodeReceipt>> take_stored();
 
   private:
@@ -45,11 +45,11 @@ class StoreThread {
     bool isEnded_ = false;
     State state_ = State::AWAY;
     int opened_ = 0;
-    std::vector<Series> series_;      ///< of the thread
-    std::vector<Series> new_series_;  ///< not yet among series_
+    std::vector<Series> series_;      ///< used by the thread
+    std::vector<Series> new_series_;  ///< not yet in series_
     std::optional<Batch> given_;
     std::optional<std::vector<NodeReceipt>> stored_;
-    std::string trouble_;  ///< the last that was reported
+    std::string trouble_;  ///< the last reported problem
     std::thread thread_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A node, a host, a broker that loses messages in both directions, and a store that fails: what the node no
-// longer keeps is stored, once and in its series. Virtual time.
+// Tests a node, a host, a broker that loses messages in both directions, and a store that fails: data that
+// the node no longer keeps are stored once, in their series. Virtual time.
 #include <functional>
 #include <map>
 #include <random>
@@ -19,7 +19,7 @@ class ShopWorld {
         node.broker.state = publish::write_host_state({true, 1, true});
         node.bear_machine();
     }
-    /// Both ways.
+    /// Transfers messages in both directions.
     void exchange(const IsLost &isLost) {
         for (const Packet &packet : std::exchange(node.broker.packets, {})) {
             if (packet.type == Packet::Type::PUBLISH && !isLost(packet.message)) {
@@ -42,7 +42,7 @@ class ShopWorld {
         }
         world.host.stored(batch.receipts);
     }
-    /// The batch is gone: the collector begins again.
+    /// The batch is lost, and the collector starts again.
     void fail_to_store() {
         static_cast<void>(take());
         forget();
@@ -51,7 +51,7 @@ class ShopWorld {
         world.host.forget();
         world.host.connected();
     }
-    /// Without losses, for as long as a minute.
+    /// Continues without losses, for at most a minute.
     void complete() {
         for (int round = 0; round < 600; ++round) {
             node.run(0.1);
@@ -59,7 +59,7 @@ class ShopWorld {
             store();
         }
     }
-    /// Numbers of Count that are not there exactly once, but a second time under the same key.
+    /// Numbers of Count that are not stored exactly once; a repetition under the same key is permitted.
     std::set<std::int64_t> lost_or_doubled(std::int64_t newest) {
         std::map<std::int64_t, int> times;
         for (const auto &[at, values] : stored["Count"]) {
@@ -79,7 +79,7 @@ class ShopWorld {
 
     NodeWorld node;
     HostWorld world;
-    std::map<std::string, std::map<TimeMs, std::vector<Value>>> stored;  ///< by metric
+    std::map<std::string, std::map<TimeMs, std::vector<Value>>> stored;  ///< values by metric
 
   private:
     Batch take() {
@@ -89,7 +89,7 @@ class ShopWorld {
         }
         return batch;
     }
-    std::vector<std::string> names_;  ///< of series
+    std::vector<std::string> names_;  ///< names of series
 };
 
 TEST(Delivery, LosesNothingWhenMessagesAndBatchesAreLost) {
@@ -114,7 +114,7 @@ TEST(Delivery, LosesNothingWhenMessagesAndBatchesAreLost) {
     EXPECT_EQ(shop.node.data->state().confirmed, shop.node.data->state().next) << "the node keeps nothing";
 }
 
-/// The sequence number of Sparkplug is the same after 256 messages.
+/// The sequence number of Sparkplug repeats after 256 messages.
 TEST(Delivery, LosesNothingWhenAllNumbersOfASequenceAreLost) {
     for (const int lost : {255, 256, 257, 512, 768}) {
         SCOPED_TRACE(lost);
@@ -136,7 +136,8 @@ TEST(Delivery, LosesNothingWhenAllNumbersOfASequenceAreLost) {
     }
 }
 
-/// The host has the aliases of one birth, and gets data of the next one with the number that it expects.
+/// The host has the aliases of one birth, and receives data of the next birth with the expected sequence
+/// number.
 TEST(Delivery, StoresNoValueUnderTheAliasesOfAnotherBirth) {
     ShopWorld shop;
     shop.complete();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The host application for messages that a test writes, in virtual time.
+// Tests the host application with messages written by the test, in virtual time.
 #include <algorithm>
 #include <random>
 
@@ -33,7 +33,7 @@ TEST(HostApplication, SendsNoReceiptBeyondAMissingMessage) {
     EXPECT_EQ(world.store(), std::vector<Receipt>{(Receipt{7, 2000, 3})});
 }
 
-/// A publisher without receipts does not send again, so its first message is stored.
+/// A publisher without receipts does not repeat messages, so its first message is stored.
 TEST(HostApplication, StoresAllOfANodeThatDoesNotCountItsMessages) {
     HostWorld world;
     Payload birth{.at = 1000, .seq = 0};
@@ -127,7 +127,7 @@ TEST(HostApplication, FollowsDeaths) {
         << "the node and its device";
 }
 
-/// Its death was lost with other messages: the birth of the node that follows is without it.
+/// The death of the device was lost with other messages; the next birth of the node does not contain it.
 TEST(HostApplication, MissesADeviceAfterABirthWithoutIt) {
     HostWorld world;
     world.bear(1000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A host application with a store that a test plays, in virtual time.
+// A host application with a simulated store, in virtual time.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +50,7 @@ class HostWorld {
             {.name = "Count", .alias = 100, .at = birth, .type = type, .value = std::int64_t{0}});
         take_counted("DBIRTH", device, "Mill");
     }
-    /// The message `seq` of the birth.
+    /// Message number `seq` of the birth.
     void count(std::uint64_t seq, TimeMs at, std::uint64_t value) {
         Payload data{.at = at, .seq = seq};
         data.metrics.push_back({.alias = 100, .at = at, .value = value});
@@ -60,7 +60,7 @@ class HostWorld {
     HostApplication::Moment now() const {
         return {1'700'000'000'000 + static_cast<TimeMs>(now_s * 1000), now_s};
     }
-    /// As a store that works. The receipts that were sent.
+    /// Stores as a working store does; returns the sent receipts.
     std::vector<Receipt> store() {
         batches.push_back(host.take_batch());
         broker.packets.clear();
@@ -85,7 +85,7 @@ class HostWorld {
     HostApplication host;
     std::vector<Batch> batches;
     double now_s = 100;
-    publish::Position position;  ///< of the last message
+    publish::Position position;  ///< position of the last message
 };
 
 }  // namespace mw::shop

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What section [SHOP] of an INI file sets, and what is reported.
+// Tests section [SHOP] of an INI file: its settings and the reported problems.
 #include <regex>
 
 #include <gtest/gtest.h>

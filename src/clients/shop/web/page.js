@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The page of a shop: asks for the machines again and again.
+// The page of a shop, which requests the machines periodically.
 'use strict';
 const PERIOD_MS = 2000, DAYS = 7;
 const part = (id) => document.getElementById(id);
@@ -12,7 +12,7 @@ function duration(s) {
   const two = (number) => String(number).padStart(2, '0');
   return `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
 }
-// Texts of machines are never read as HTML.
+// Texts of machines are never interpreted as HTML.
 function row(cells, numbers = []) {
   const line = document.createElement('tr');
   cells.forEach((cell, i) => {

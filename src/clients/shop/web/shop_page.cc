@@ -13,8 +13,8 @@
 namespace mw::shop {
 namespace {
 
-/// An answer is used again for a multiple of the time that it took. So many browsers and many machines take a
-/// fifth of one connection at most: a tenth for each of two queries.
+/// An answer is reused for a multiple of the time that it took. So many browsers and many machines use at
+/// most a fifth of one connection: a tenth for each of two queries.
 constexpr double FRESH_FACTOR = 10;
 constexpr std::uint64_t MOST_DAYS = 366;
 

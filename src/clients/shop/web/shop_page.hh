@@ -11,14 +11,14 @@
 
 namespace mw::shop {
 
-/// One thread, that of the server. An answer waits for the database.
+/// For one thread, that of the server. An answer waits for the database.
 class ShopPage final : public screen::Application {
   public:
-    /// `steady_s`: a time that never jumps.
+    /// `steady_s`: a monotonic time.
     ShopPage(std::string database, std::function<double()> steady_s);
 
-    /// GET / : the page. GET /machines: states of all machines. GET /machines/sums: their shift.
-    /// GET /machines/history?machine=ID&days=N: one machine.
+    /// GET / : the page. GET /machines: states of all machines. GET /machines/sums: their current shift. GET
+    /// /machines/history?machine=ID&days=N: one machine.
     void answer(const screen::Request &request, screen::Reply reply) override;
     void opened(screen::SessionId, screen::Role, screen::Protection) override {}
     void received(screen::SessionId, std::string_view) override {}

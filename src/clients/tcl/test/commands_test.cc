@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The commands emc_* with a task that accepts them.
+// Tests the commands emc_* with a task that accepts them.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -41,7 +41,7 @@ class TclTest : public ::testing::Test {
             }
         });
     }
-    /// A cycle of task, in a separate thread, as a command sleeps until it is taken.
+    /// Runs a cycle of task, in a separate thread, because a command sleeps until it is taken.
     void cycle() {
         const std::scoped_lock lock(mutex);
         for (const auto &delivery : desk.take(now_ns += 1000000)) {
@@ -53,13 +53,13 @@ class TclTest : public ::testing::Test {
         status->time_ns = now_ns;
         desk.publish(*status);
     }
-    /// Changes what the machine shows.
+    /// Changes the shown status of the machine.
     void show(const std::function<void(messages::MachineStatus &)> &change) {
         const std::scoped_lock lock(mutex);
         change(*status);
         desk.publish(*status);
     }
-    /// The result of a command, "error: TEXT" for one of the program.
+    /// The result of a command; "error: TEXT" for an error of the program.
     std::string say(const std::string &name, const Words &words = {}) {
         {
             const std::scoped_lock lock(mutex);
@@ -89,7 +89,7 @@ class TclTest : public ::testing::Test {
     std::string asked;
     Progress progress = Progress::DONE;
     std::optional<Shell> shell;
-    std::jthread task;  ///< the last: it ends first
+    std::jthread task;  ///< last member, so that it ends first
 };
 
 TEST_F(TclTest, TellsTheMachine) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One suite of behaviour over every kind of buffer, mutex and queueing.
+// The same tests for all types of buffers, each mutex, with and without queue.
 #include <unistd.h>
 
 #include <filesystem>
@@ -63,7 +63,7 @@ class OneBuffer {
     Config config_;
 };
 
-/// Kind and mutex.
+/// Type of buffer and mutex.
 class NmlBufferTest : public ::testing::TestWithParam<std::tuple<const char *, const char *>> {
   protected:
     std::string kind() const { return std::get<0>(GetParam()); }
@@ -112,7 +112,7 @@ TEST_P(NmlBufferTest, AQueueGivesEachMessageOnceInItsOrderWithItsNumber) {
     OneBuffer setup(kind(), mutex() + " queue");
     const auto a = setup.open("master"), b = setup.open("reader");
     ASSERT_TRUE(a != nullptr && b != nullptr);
-    for (int round = 0; round < 40; ++round) {  // several times around
+    for (int round = 0; round < 40; ++round) {  // the queue wraps several times
         for (int i = 0; i < 5; ++i) {
             ASSERT_TRUE(
                 a->write(std::string(static_cast<std::size_t>(20 * i + round), 'a'), AT_ONCE).has_value());
@@ -133,7 +133,7 @@ TEST_P(NmlBufferTest, AFullQueueSaysSoWhenTimeIsOverAndTakesMoreWhenOneWasTakenO
     const auto a = setup.open("master"), b = setup.open("reader");
     ASSERT_TRUE(a != nullptr && b != nullptr);
     int written = 0;
-    while (a->write(std::string(84, 'q'), AT_ONCE).has_value()) {  // 104 bytes with its head
+    while (a->write(std::string(84, 'q'), AT_ONCE).has_value()) {  // 104 bytes with the header
         ++written;
     }
     EXPECT_EQ(written, 7);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Processes that use a buffer and are killed at any instant (F5): messages are whole, no process hangs, no
-// message comes twice or out of order, and the buffer still works.
+// Tests processes that are killed at any instant while they use a buffer (F5): messages are complete, no
+// process hangs, no message is repeated or out of order, and the buffer remains usable.
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -30,7 +30,7 @@ Config death_config(const std::string &options) {
                         "test.nml", sink);
 }
 
-/// Bytes by which a reader knows that all of them are of one message, without the buffer's help.
+/// Content by which a reader detects that all bytes belong to one message, without the buffer's help.
 std::string telling(unsigned number) {
     std::string bytes = std::to_string(number) + ":";
     const std::size_t size = bytes.size() + number * 131 % 5000;
@@ -40,7 +40,7 @@ std::string telling(unsigned number) {
     return bytes;
 }
 
-/// Made once: a process that writes them does little else, so that it is mostly killed within a write.
+/// Created once, so that a process mostly writes and is usually killed during a write.
 const std::vector<std::string> &telling_ones() {
     static const std::vector<std::string> ALL = [] {
         std::vector<std::string> all;
@@ -73,7 +73,7 @@ class Child {
     Child &operator=(const Child &) = delete;
     ~Child() { kill(); }
 
-    /// True: it was us, and it had not ended before.
+    /// True if this call killed the process, which had not ended before.
     bool kill() {
         if (pid_ <= 0) {
             return false;
@@ -82,7 +82,7 @@ class Child {
         int status = 0;
         return ::waitpid(std::exchange(pid_, -1), &status, 0) > 0 && WIFSIGNALED(status);
     }
-    /// Its exit status, once it ends by itself.
+    /// Exit status, when the process ends by itself.
     int wait() {
         int status = 0;
         return ::waitpid(std::exchange(pid_, -1), &status, 0) > 0 && WIFEXITED(status) ? WEXITSTATUS(status)
@@ -95,7 +95,7 @@ class Child {
 
 class NmlDeathTest : public ::testing::TestWithParam<const char *> {
   protected:
-    /// In another process, until it is killed.
+    /// Runs in another process until it is killed.
     template <class Work>
     void use_buffer(const Work &work) {
         LocalPlaces local;
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(All, NmlDeathTest,
 
 TEST_P(NmlDeathTest, AWriterThatIsKilledLeavesWholeMessagesAndNobodyHangs) {
     const auto reader = open_master();
-    ASSERT_FALSE(telling_ones().empty());  // before processes are made, which then have them too
+    ASSERT_FALSE(telling_ones().empty());  // created before the processes, which inherit them
     unsigned read = 0;
     WriteNumber last = 0;
     for (int round = 0; round < ROUNDS; ++round) {

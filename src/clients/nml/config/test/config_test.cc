@@ -26,7 +26,7 @@ Parsed parse(std::string_view text) {
     return parsed;
 }
 
-/// The only thing told about `text`.
+/// The only message reported about `text`.
 std::string told(std::string_view text) {
     const Parsed parsed = parse(text);
     return parsed.told.size() == 1 ? parsed.told[0] : std::to_string(parsed.told.size()) + " things told";

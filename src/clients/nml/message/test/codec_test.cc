@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every message through every encoding.
+// Tests every message in every encoding.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -20,7 +20,7 @@ using messages::Kind;
 
 constexpr double ENDLESS = std::numeric_limits<double>::infinity();
 
-/// Puts something else into every field; knows nothing of the encodings.
+/// Writes other values to every field, without using the encodings.
 class Scrambler {
   public:
     explicit Scrambler(unsigned seed) : random_(seed) {}
@@ -66,7 +66,7 @@ class Scrambler {
         case Kind::FIXED_TEXT: {
             std::string text;
             for (std::size_t left = random_() % 40; left > 0; --left) {
-                text += static_cast<char>(random_());  // quotes, backslashes, newlines, zero bytes, all
+                text += static_cast<char>(random_());  // quotes, backslashes, newlines, zero bytes: all bytes
             }
             ASSERT_TRUE(messages::set_text(type, at, text));
             break;
@@ -77,7 +77,7 @@ class Scrambler {
     std::mt19937 random_;
 };
 
-/// Values as the declarations see them: none of the encodings takes part.
+/// Values read through the declarations, without using the encodings.
 std::string values_of(Message &message) {
     const MessageView view = message.view();
     std::string all;
@@ -190,7 +190,7 @@ TEST(NmlCodec, CutLengthenedAndChangedBytesAreErrorsOrOtherMessagesAndNothingEls
                 std::string bad = good;
                 bad[random() % bad.size()] = static_cast<char>(random());
                 auto read = codec.decode(bad);
-                if (read.has_value()) {  // another valid message: it comes back too
+                if (read.has_value()) {  // another valid message must be decoded, too
                     std::string again;
                     ASSERT_TRUE(codec.encode(read->view(), again).has_value());
                     auto second = codec.decode(again);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Buffers through their server, on loopback.
+// Tests buffers through their server, on loopback.
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <signal.h>
@@ -34,7 +34,7 @@ constexpr std::string_view SERVED = "B cmd SHMEM 127.0.0.1 8192 0 0 1 8 501 TCP=
                                     "P gui cmd REMOTE 127.0.0.1 RW 0 1.0 0 1\n"
                                     "P gui sts REMOTE 127.0.0.1 R 0 1.0 0 1\n";
 
-/// Messages as text of one kind, without the codec's help in between.
+/// Messages of one type as text, without using the codec.
 std::string mdi(const Vocabulary &vocabulary, const std::string &line) {
     CommandMessage<messages::Mdi> message{{1}, {line}};
     std::string bytes;
@@ -44,7 +44,7 @@ std::string mdi(const Vocabulary &vocabulary, const std::string &line) {
 
 class NmlNetTest : public ::testing::Test {
   protected:
-    /// Starts a server at a port that is free; clients then find it there.
+    /// Starts a server at a free port, at which clients find it.
     void start(Transport transport = Transport::TCP, const std::string &password_file = "") {
         diagnostics::Sink sink;
         config_ = parse_config(SERVED, "net.nml", sink);
@@ -120,7 +120,7 @@ TEST_P(NmlTransportTest, AClientWritesReadsPeeksWaitsAndClearsAsALocalOne) {
     EXPECT_FALSE(cmd_->peek(message, AT_ONCE).value());
 }
 
-/// Jogs that the server stops; empty if none comes within a second.
+/// Jogs that the server stops; empty if there is none within a second.
 std::vector<messages::Command> left_by(Server &server) {
     for (int i = 0; i < 1000; ++i) {
         auto left = server.take_left_jogs();
@@ -267,7 +267,7 @@ TEST_F(NmlNetTest, ARequestOfAClientThatHasGivenUpIsNotCarriedOut) {
     {
         const auto socket = connect_to("127.0.0.1", server_->tcp_port(), Transport::TCP, Deadline({5.0}));
         ASSERT_TRUE(socket.has_value()) << socket.error().str();
-        const int on = 1;  // the bytes leave together with the end of the connection
+        const int on = 1;  // sends the bytes together with the end of the connection
         ASSERT_EQ(::setsockopt(socket->fd(), IPPROTO_TCP, TCP_CORK, &on, sizeof on), 0);
         const std::string request =
             to_wire({Operation::WRITE, Status::REQUEST, 1, 1, 0, 0, mdi(vocabulary_, "G0 X1")});

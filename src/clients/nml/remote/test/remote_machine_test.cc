@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Clients of a machine behind an NML server, on loopback. The test is the machine: it takes commands out of
-// emcCommand and writes emcStatus.
+// Tests clients of a machine behind an NML server, on loopback. The test replaces the machine: it takes
+// commands from emcCommand and writes emcStatus.
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -41,7 +41,7 @@ constexpr const char *CONFIG = "B emcCommand SHMEM 127.0.0.1 8192 0 0 1 16 701 T
                                "P xemc emcCommand REMOTE 127.0.0.1 W 0 1.0 0 1\n"
                                "P xemc emcStatus REMOTE 127.0.0.1 R 0 1.0 0 1\n"
                                "P xemc emcError REMOTE 127.0.0.1 R 0 1.0 0 1\n";
-/// Longer than any limit of the connection.
+/// Above any time limit of the connection.
 constexpr double PATIENCE_S = 20;
 
 Config config_of(int port) {
@@ -49,7 +49,7 @@ Config config_of(int port) {
     Config config = parse_config(fmt::format(fmt::runtime(CONFIG), 1), "remote.nml", sink);
     EXPECT_FALSE(sink.hasErrors());
     for (BufferSettings &buffer : config.buffers) {
-        buffer.tcp_port = port;  // 0, which a file cannot have: a free one
+        buffer.tcp_port = port;  // 0, which a file cannot have, selects a free port
     }
     return config;
 }
@@ -124,7 +124,7 @@ class RemoteMachineTest : public ::testing::Test {
         one->reason.assign(reason);
         status_->head.echo_serial_number = std::max(status_->head.echo_serial_number, number);
     }
-    /// The status has the outcome of the command from now on.
+    /// From now on the status contains the outcome of the command.
     void end(std::uint64_t number, CommandState state, const std::string &reason = "") {
         note(number, state, reason);
         publish();
@@ -188,7 +188,7 @@ TEST_F(RemoteMachineTest, ManyCommandsOfTwoClientsAreNotConfused) {
             }
         });
     }
-    // One of each client, so that neither is ahead by more commands than a status has outcomes.
+    // One command of each client in turn, so that neither has more commands than a status has outcomes.
     for (int i = 0; i < COMMANDS; ++i) {
         const std::array both{take(), take()};
         for (const Taken &taken : {both[1], both[0]}) {
@@ -224,7 +224,7 @@ TEST_F(RemoteMachineTest, AStatusThatIsNoneIsAnErrorThatNamesTheServer) {
     CommandMessage<messages::Mdi> mdi{{1}, {"G0 X1"}};
     ASSERT_TRUE(Codec(vocabulary_, Encoding::XDR).encode(view(mdi), command).has_value());
     std::string other_version = whole;
-    other_version[7] = static_cast<char>(other_version[7] ^ 1);  // the shape: its fields are others
+    other_version[7] = static_cast<char>(other_version[7] ^ 1);  // another shape means other fields
     std::vector<std::string> wrong{"garbage",
                                    std::string(4, '\0'),
                                    whole.substr(0, whole.size() / 2),
@@ -257,7 +257,7 @@ TEST_F(RemoteMachineTest, AStatusThatIsNoneIsAnErrorThatNamesTheServer) {
     }
 }
 
-/// Accepts clients and answers each with the same bytes, or not at all.
+/// Accepts clients and sends each the same bytes, or nothing.
 class WrongServer {
   public:
     explicit WrongServer(std::string answer) : answer_(std::move(answer)) {
