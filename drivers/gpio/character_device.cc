@@ -43,8 +43,8 @@ std::uint64_t flags_of(const Line &line) noexcept {
     return flags;
 }
 
-/// Gives the line at `index` its flags: an attribute for each set of flags that occurs. False: too many of
-/// them.
+/// Sets the flags of the line at `index`: an attribute for each set of flags that occurs. False if there are
+/// too many sets.
 bool add_flags(gpio_v2_line_config &config, std::uint64_t flags, std::size_t index) noexcept {
     for (std::uint32_t i = 0; i < config.num_attrs; ++i) {
         if (config.attrs[i].attr.flags == flags) {

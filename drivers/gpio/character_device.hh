@@ -36,7 +36,7 @@ class CharacterDevice final : public LineAccess {
         int file = -1;
         Direction direction = Direction::INPUT;
         std::size_t count = 0;
-        std::uint8_t line[MAX_LINES] = {};  ///< of the component, for each line of the group
+        std::uint8_t line[MAX_LINES] = {};  ///< number in the component, for each line of the group
     };
     /// Location of a line.
     struct Place {

@@ -53,7 +53,7 @@ struct LinePins {
     ParamRw<std::uint32_t> reset_ns;
     FailureState reading, writing;
     Levels inputs = 0, written = 0;
-    bool known = false;  ///< `written` has the current outputs
+    bool known = false;  ///< `written` contains the current outputs
     long long written_ns = 0;
 
     /// Claims the lines: 0, or a negated errno with a message.
@@ -118,7 +118,7 @@ struct LinePins {
         send(written & ~resetting);
     }
 
-    /// All outputs inactive.
+    /// Switches all outputs off.
     void end() noexcept {
         if (access != nullptr) {
             access->write(0);
@@ -139,7 +139,7 @@ struct LinePins {
             }
         }
     }
-    /// Shows a failure, with one message for its first cycle.
+    /// Shows the result of a call; reports the first cycle of a failure once.
     bool keep(bool good, FailureState &state, const char *what) noexcept {
         if (state.begins(good)) {
             rtapi_print_msg(RTAPI_MSG_ERR, "GPIO lines from '%s' on cannot be %s: errno %d\n",

@@ -80,7 +80,7 @@ int apply_to(Lines &lines, const Names &names, const char *list, Allowed allowed
     return 0;
 }
 
-/// The lines of the module parameters: 0, or a negated errno with a message.
+/// Reads the lines from the module parameters. Returns 0, or a negated errno with a message.
 int read_lines(const Wanted &wanted, LinePins &pins) noexcept {
     Lines &lines = pins.lines;
     int status = add(lines, wanted.inputs, Direction::INPUT);

@@ -3,9 +3,10 @@
 //
 //     loadrt hal_pi_gpio dir=0x3 exclude=0x3fffffc
 //
-// Bit n of the masks is GPIO n+2. dir: 1 is an output; exclude: 1 leaves the line alone. Without them all
-// lines are outputs. Function hal_pi_gpio.read sets `pin-NN-in` and `pin-NN-in-not`; hal_pi_gpio.write sets
-// the lines to `pin-NN-out`. `fault` is true while the kernel does not accept a read or a write.
+// Bit n of the masks is GPIO n+2. dir: 1 is an output; exclude: 1 means that the line is not used. Without
+// them all lines are outputs. Function hal_pi_gpio.read sets `pin-NN-in` and `pin-NN-in-not`;
+// hal_pi_gpio.write sets the lines to `pin-NN-out`. `fault` is true while the kernel does not accept a read
+// or a write.
 #include "drivers/gpio/component.hh"
 
 namespace mw::gpio {

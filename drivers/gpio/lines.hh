@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines of GPIO chips: which lines are wanted, and how they are read and written.
+// Lines of GPIO chips: the requested lines, and access to them.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace mw::gpio {
 
-/// Lines of one component.
+/// Maximum number of lines of one component.
 constexpr std::size_t MAX_LINES = 64;
-/// Bytes of a line's name, with its end.
+/// Size of a line's name, with its zero. [bytes]
 constexpr std::size_t NAME_SIZE = 32;
 
 /// Levels of lines, bit i for line i of the component.
@@ -25,7 +25,7 @@ enum class Bias : std::uint8_t { AS_IS, DISABLED, PULL_DOWN, PULL_UP };
 
 /// A requested line.
 struct Line {
-    char name[NAME_SIZE] = {};  ///< as gpioinfo shows it
+    char name[NAME_SIZE] = {};  ///< name as shown by gpioinfo
     Direction direction = Direction::INPUT;
     Drive drive = Drive::PUSH_PULL;
     Bias bias = Bias::AS_IS;
@@ -40,7 +40,7 @@ struct Lines {
 /// One message for the first cycle of a failure.
 class FailureState {
   public:
-    /// Takes the result of a call; true when the failure begins with it.
+    /// Takes the result of a call; true if a failure begins with this call.
     bool begins(bool good) noexcept {
         const bool begun = !good && !failing_;
         failing_ = !good;
@@ -55,8 +55,8 @@ class FailureState {
 /// Reads and writes lines. [read and write: servo thread, no allocation]
 class LineAccess {
   public:
-    /// 0, or a negated errno with a message in the log that names the line. Outputs become inactive. [while
-    /// loading]
+    /// Claims the lines; outputs become inactive. Returns 0, or a negated errno with a message in the log
+    /// that names the line. [while loading]
     virtual int open(const char *module, const Lines &lines) noexcept = 0;
     /// States of all inputs; false: they could not be read, and `levels` is unchanged.
     virtual bool read(Levels &levels) noexcept = 0;

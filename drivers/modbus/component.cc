@@ -103,7 +103,7 @@ std::uint16_t register_of(const Element &element) {
     return static_cast<std::uint16_t>(static_cast<std::int32_t>(limited));
 }
 
-/// One link and its transactions: all in one thread, because they are sequential on the wire.
+/// One link and its transactions, in one thread, because they are sequential on the wire.
 class LinkWork {
   public:
     LinkWork(const Link &link, std::string component, double slowdown_s,
@@ -165,7 +165,7 @@ class LinkWork {
 
     bool carry_out(Work &work) {
         const bool done = isRead(work.asked->function) ? read(work) : write(work);
-        // A lost connection is opened again; one that returned an exception stays open.
+        // A lost connection is opened again; after an exception response the connection remains open.
         if (!done && errno < MODBUS_ENOBASE) {
             const int reason = errno;
             context_.reset();

@@ -9,9 +9,9 @@
 
 namespace mw::modbus {
 
-/// Creates the pins, marks the component as ready and repeats the transactions until `stop` is not 0. A
-/// device that does not answer is reported once, counted on its pin num_errors, and polled again; the last
-/// values are kept.
+/// Creates the pins, marks the component as ready and repeats the transactions until `stop` is not 0. If a
+/// device does not answer, this is reported once and counted on its pin num_errors, the last values are kept,
+/// and the device is polled again.
 Result<> run(const Setup &setup, const volatile std::sig_atomic_t &stop);
 
 }  // namespace mw::modbus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The contents of a configuration file of mb2hal: links, and the transactions that are repeated on them. The
-// form is that of LinuxCNC's mb2hal (versions 1.0 and 1.1).
+// format is that of LinuxCNC's mb2hal (versions 1.0 and 1.1).
 #pragma once
 
 #include <string>
@@ -24,10 +24,10 @@ enum class Function {
 };
 
 bool isRead(Function function);
-/// Its elements are bits, not 16-bit registers.
+/// True if its elements are bits, not 16-bit registers.
 bool isOfBits(Function function);
 
-/// A serial line or a connection by TCP, which transactions share.
+/// A serial line or TCP connection, shared by transactions.
 struct Link {
     bool is_tcp = false;
     std::string address;  ///< TCP_IP
@@ -40,7 +40,7 @@ struct Link {
 };
 
 struct Transaction {
-    std::string name;      ///< of its pins: HAL_TX_NAME, or its number
+    std::string name;      ///< prefix of its pins: HAL_TX_NAME, or its number
     std::size_t link = 0;  ///< index of the link
     Function function = Function::READ_COILS;
     int slave = 0;
@@ -48,7 +48,7 @@ struct Transaction {
     std::vector<std::string> elements;  ///< names of pins: "00", "01", or PIN_NAMES
     int response_timeout_ms = 500;
     int byte_timeout_ms = 500;
-    int delay_ms = 0;        ///< after each, on a serial line
+    int delay_ms = 0;        ///< delay after each transaction on a serial line
     double max_rate_hz = 0;  ///< 0: maximum rate of the link
     int debug = 1;           ///< 0 silent, 1 errors, 2 successes too, 3 and 4 all bytes
 };

@@ -15,7 +15,7 @@ namespace mw::parport {
 
 namespace {
 
-/// Values of the ECP control register: the mode is in its three high bits.
+/// Values of the ECP control register; the mode is in the three high bits.
 constexpr std::uint8_t BYTE_MODE = 0x20, EPP_MODE = 0x80;
 
 }  // namespace
@@ -49,7 +49,7 @@ int DeviceAccess::open(const char *module, int number) noexcept {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: cannot open %s: errno %d\n", module, name, error);
         return -error;
     }
-    // The port is shared: another claim, such as that of a printer, does not end ours, but this call waits
+    // The port is shared. Another claim, for instance of a printer, does not end ours, but this call waits
     // for it.
     if (::ioctl(file_, PPCLAIM) != 0) {
         const int error = errno;

@@ -15,7 +15,7 @@ bool isDigit(char c) noexcept {
     return c >= '0' && c <= '9';
 }
 
-/// The type with this first letter; false: there is no such type.
+/// Finds the type with this first letter; false if there is none.
 bool find_mode(char letter, Mode &mode) noexcept {
     constexpr struct {
         char letter;
@@ -58,7 +58,7 @@ const char *add_port(Config &config, const char *word) noexcept {
 
 Config read_config(const char *text) noexcept {
     Config config;
-    bool typed = true;  // the last port has its type, or there is none
+    bool typed = true;  // the last port has a type, or there is no port
     for (text += std::strspn(text, SEPARATORS); *text != '\0' && config.problem == nullptr;
          text += std::strspn(text, SEPARATORS)) {
         const std::size_t length = std::strcspn(text, SEPARATORS);

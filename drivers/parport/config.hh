@@ -18,12 +18,12 @@ struct PortConfig {
     bool operator==(const PortConfig &) const = default;
 };
 
-/// The ports of a string, or why it is not valid.
+/// The ports of a string, or the reason why it is not valid.
 struct Config {
     std::array<PortConfig, MAX_PORTS> port{};
     int count = 0;
     const char *problem = nullptr;  ///< nullptr: none
-    std::array<char, 32> token{};   ///< the word that the problem is about; may be empty
+    std::array<char, 32> token{};   ///< the word with the problem; may be empty
 };
 
 /// Reads the string; words are separated by spaces or underscores. [while loading; no allocation]

@@ -5,9 +5,9 @@
 //
 // Function parport.N.read sets `pin-NN-in` and `pin-NN-in-not`; parport.N.write gives the connector the
 // states of `pin-NN-out`, inverted while the parameter `pin-NN-out-invert` is true. parport.N.reset waits
-// until `reset-time` [ns] after the write and takes data pins whose parameter `pin-NN-out-reset` is true back
-// to their inactive state, so that a stepgen with stepspace 0 makes one step in each period. parport.read-all
-// and parport.write-all serve all ports. backend= selects how the registers are reached: auto, direct, device
+// until `reset-time` [ns] after the write and resets data pins whose parameter `pin-NN-out-reset` is true to
+// their inactive state, so that a stepgen with stepspace 0 makes one step in each period. parport.read-all
+// and parport.write-all serve all ports. backend= selects the access to the registers: auto, direct, device
 // (/dev/parportN) or simulated. Under the virtual clock ports are simulated. A simulated port has
 // `pin-NN-in-fake` (bit in) for the levels of its inputs and `pin-NN-out-fake` (bit out) for those of its
 // outputs.
@@ -27,7 +27,7 @@ using namespace sdk;
 namespace {
 
 constexpr const char *MODULE = "hal_parport";
-/// Numbers of detected ports; above are addresses.
+/// Below this value, numbers of detected ports; from it on, addresses.
 constexpr std::uint16_t FIRST_ADDRESS = 16;
 
 enum class Backend : std::uint8_t { AUTO, DIRECT, DEVICE, SIMULATED };
@@ -138,7 +138,7 @@ struct PortPins {
         show_levels();
     }
 
-    /// All outputs inactive.
+    /// Switches all outputs off.
     void end() noexcept {
         if (access == nullptr) {
             return;
@@ -199,7 +199,7 @@ struct Ports {
             return -EINVAL;
         }
         if (mw_ext_is_virtual() != 0) {
-            wanted = Backend::SIMULATED;  // another process may drive a machine by this port
+            wanted = Backend::SIMULATED;  // another process may drive a machine with this port
         }
         for (int i = 0; i < config.count; ++i) {
             if (const int status = add(comp_id, config.port[static_cast<std::size_t>(i)], wanted);

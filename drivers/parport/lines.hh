@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The lines of a PC parallel port: which register and bit belongs to which pin of the 25-pin connector.
-// Source: IEEE 1284, compatibility mode; shared/hardware.md, part D.
+// The lines of a PC parallel port: register and bit of each pin of the 25-pin connector. Source: IEEE 1284,
+// compatibility mode; shared/hardware.md, part D.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct Line {
     std::uint8_t pin = 0;  ///< 1 to 17
     Register reg = Register::DATA;
     std::uint8_t mask = 0;
-    bool inverted = false;  ///< by the hardware: the bit is 1 while the pin is low
+    bool inverted = false;  ///< inverted by the hardware: the bit is 1 while the pin is low
 };
 
 constexpr std::uint8_t bit(unsigned number) noexcept {
@@ -49,7 +49,7 @@ inline constexpr std::array<Line, 4> CONTROL_LINES{{{1, Register::CONTROL, bit(0
                                                     {14, Register::CONTROL, bit(1), true},
                                                     {16, Register::CONTROL, bit(2), false},
                                                     {17, Register::CONTROL, bit(3), true}}};
-/// The most pins of one direction: data and status lines, or data and control lines.
+/// The maximum number of pins of one direction: data and status lines, or data and control lines.
 constexpr std::size_t MAX_LINES = 13;
 
 /// Bit of the control register that makes the data pins inputs.
@@ -94,7 +94,7 @@ constexpr Lines inputs_of(Mode mode) noexcept {
     return lines;
 }
 
-/// The bits of the control register that are not pins, and those of pins that are no outputs.
+/// The bits of the control register that are not pins, and the bits of pins that are not outputs.
 constexpr std::uint8_t control_base(Mode mode) noexcept {
     if (mode == Mode::IN) {
         return DATA_IS_INPUT;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One parallel port: levels of pins to registers and back.
+// One parallel port: converts levels of pins to registers and back.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ using Levels = std::uint32_t;
 /// Writes registers only when they change. [servo or base thread; no allocation]
 class Port {
   public:
-    /// Selects directions and gives the outputs their first levels. [while loading]
+    /// Selects the directions and sets the first levels of the outputs. [while loading]
     void begin(PortAccess &access, Mode mode, Levels levels) noexcept {
         access_ = &access;
         outputs_ = outputs_of(mode);
@@ -45,8 +45,8 @@ class Port {
 
     void write(Levels levels) noexcept { write(bytes_of(levels), false); }
 
-    /// Gives the data pins of `mask` the levels `levels`; the others keep theirs. The next write() writes
-    /// again.
+    /// Sets the data pins of `mask` to `levels`; other pins do not change. The next write() writes all
+    /// registers again.
     void reset(Levels mask, Levels levels) noexcept {
         std::uint8_t data = last_.data;
         for (std::size_t i = 0; i < outputs_.count; ++i) {
@@ -93,7 +93,7 @@ class Port {
 
     PortAccess *access_ = nullptr;
     Lines outputs_, inputs_;
-    bool has_inputs_[3] = {};  ///< by register
+    bool has_inputs_[3] = {};  ///< for each register
     std::uint8_t base_ = 0;
     Bytes last_;
 };

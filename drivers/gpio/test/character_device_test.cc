@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The calls of the character device against a kernel of memory with two chips.
+// Tests the calls of the character device with a simulated kernel that has two chips.
 #include <linux/gpio.h>
 
 #include <cerrno>
@@ -26,7 +26,7 @@ struct Kernel final : System {
     std::map<std::string, bool> levels;  ///< electrical levels by name of the line
     int next_file = 100;
     int calls = 0;
-    int failing = 0;  ///< errno of reads and writes
+    int failing = 0;  ///< errno returned by reads and writes
     int busy = 0;
     std::vector<int> closed;
 
@@ -174,7 +174,7 @@ TEST(GpioCharacterDevice, AFailureKeepsTheLastStates) {
     EXPECT_FALSE(device.write(bit_of(1)));
 }
 
-// Reads and writes have separate states: reads that work do not end a failure of writes.
+// Reads and writes have separate states: successful reads do not end a failure of writes.
 TEST(GpioFailureState, BeginsOnce) {
     FailureState writing;
     EXPECT_FALSE(writing.begins(true));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The processor time of a cycle of the driver with its bus, without the wait for the board: read and write of
-// all pins, the request, the check of the answer, the write packet. The answers are those of the simulated
-// board in its last cycle before the measurement, with the numbers that the driver expects.
+// The processor time of a cycle of the driver with its bus, without the wait for the board. It includes read
+// and write of all pins, the request, the check of the answer and the write packet. The answers are those of
+// the last cycle of the simulated board before the measurement, with the expected numbers.
 #include <chrono>
 #include <memory>
 #include <string>
@@ -25,7 +25,7 @@ struct Packets {
     std::int64_t requests = 0, answers = 0, writes = 0, request_bytes = 0, answer_bytes = 0, write_bytes = 0;
 };
 
-/// First the simulated board, then its last answer again and again.
+/// Connects to the simulated board first, then repeats its last answer.
 class RecordedTransport final : public lbp16::Transport {
   public:
     explicit RecordedTransport(std::unique_ptr<board::BoardTransport> live) : live_(std::move(live)) {}
@@ -95,7 +95,7 @@ class RecordedTransport final : public lbp16::Transport {
     Packets packets_;
 };
 
-/// A board and its driver, in work.
+/// A board and its driver in operation.
 class Driven {
   public:
     Driven(const std::string &model, const std::string &physics, const std::string &config)
@@ -176,7 +176,7 @@ BENCHMARK_CAPTURE(BM_Cycle, 7i95, "7i95", "", "");
 BENCHMARK_CAPTURE(BM_Cycle, 7i97, "7i97", "", "");
 BENCHMARK_CAPTURE(BM_Cycle, 7i80hd_3pwm, "7i80hd-3pwm", "", "");
 
-/// As in a thread with `read-request` of both boards first.
+/// As in a thread that first calls `read-request` of both boards.
 void BM_TwoBoards(benchmark::State &state) {
     Driven one("7i76e", "remote 0 card=7i76\n", "num_stepgens=5 num_encoders=1 sserial_port_0=0xxxxxxx");
     Driven two("7i76e", "remote 0 card=7i76\n", "num_stepgens=5 num_encoders=1 sserial_port_0=0xxxxxxx");

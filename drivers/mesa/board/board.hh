@@ -15,11 +15,11 @@
 
 namespace mw::mesa::board {
 
-/// A command that a board has executed.
+/// A command that the board has executed.
 struct ExecutedCommand {
     std::int64_t time_ns = 0;
     lbp16::Command command;
-    std::span<const std::byte> data;  ///< written or read
+    std::span<const std::byte> data;  ///< data that were written or read
 };
 
 /// One line of a log: time [ns], R or W with the space, address, units and data as hexadecimal numbers.
@@ -28,7 +28,7 @@ std::string log_line(const ExecutedCommand &executed);
 /// The answer to a packet.
 struct Reply {
     std::vector<std::byte> bytes;
-    std::int64_t time_ns = 0;  ///< later than the packet when it waits
+    std::int64_t time_ns = 0;  ///< later than the packet if the board waits
 };
 
 /// A board and its connected hardware. Times are ns since its creation and do not decrease. [one thread]
@@ -38,11 +38,12 @@ class Board {
     Board(const Board &) = delete;
     Board &operator=(const Board &) = delete;
 
-    /// Executes a packet that arrives at `time_ns`. No reply: it has no reads, or the board has no power.
+    /// Executes a packet that arrives at `time_ns`. Returns no reply if the packet has no reads, or the board
+    /// has no power.
     std::optional<Reply> execute(std::span<const std::byte> packet, std::int64_t time_ns);
     /// Advances the time.
     void advance(std::int64_t time_ns);
-    /// All registers are as at power-up; for `off_ns` the board does not answer.
+    /// Resets all registers to their values at power-up; the board does not answer for `off_ns`.
     void restart(std::int64_t time_ns, std::int64_t off_ns);
 
     using Log = std::function<void(const ExecutedCommand &)>;
@@ -77,7 +78,7 @@ class Board {
     Flash flash_;
     Log log_;
     std::int64_t power_on_ns_ = 0;
-    std::int64_t wait_ns_ = 0;  ///< of the current packet
+    std::int64_t wait_ns_ = 0;  ///< wait of the current packet
     bool restarts_ = false;     ///< the current packet resets the board
 };
 

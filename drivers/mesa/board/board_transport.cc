@@ -25,7 +25,7 @@ void BoardTransport::wait_until(std::int64_t deadline_ns) noexcept {
     if (deadline_ns <= now_ns_) {
         return;
     }
-    // A reply that is there already needs no time.
+    // A reply that has arrived already needs no time.
     const std::int64_t next_ns = std::max(link_.next_ns().value_or(deadline_ns), now_ns_);
     now_ns_ = std::min(deadline_ns, next_ns);
     link_.run_until(now_ns_);

@@ -11,7 +11,7 @@ namespace mw::mesa::board {
 /// realtime thread. [one thread]
 class BoardTransport final : public lbp16::Transport {
   public:
-    /// `link` outlives it.
+    /// `link` must outlive the transport.
     explicit BoardTransport(Link &link) : link_(link) {}
 
     lbp16::TransportResult send(std::span<const std::byte> packet) noexcept override;

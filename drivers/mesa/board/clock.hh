@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Times of the board and ticks of its clocks, exact.
+// Exact times of the board and ticks of its clocks.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ constexpr std::int64_t ticks_at(std::int64_t time_ns, std::uint32_t hz) noexcept
     return multiply_divide(time_ns, hz, NS_IN_S);
 }
 
-/// The first time at which the clock has made so many ticks [ns].
+/// The first time at which the clock has made this number of ticks [ns].
 constexpr std::int64_t time_of_tick(std::int64_t ticks, std::uint32_t hz) noexcept {
     return -multiply_divide(-ticks, NS_IN_S, hz);
 }

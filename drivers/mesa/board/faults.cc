@@ -14,7 +14,7 @@ namespace {
 
 constexpr double NS_IN_US = 1e3, NS_IN_MS = 1e6;
 constexpr double MAX_US = 1e9, MAX_MS = 1e9;
-/// How much later a packet arrives that others overtake.
+/// Delay of a packet that other packets overtake.
 constexpr std::int64_t REORDER_NS = 700'000;
 
 std::int64_t whole_ns(double value, double unit) {

@@ -12,29 +12,29 @@
 
 namespace mw::mesa::board {
 
-/// What happens to the packets of one direction. Probabilities are from 0 to 1.
+/// Faults of the packets of one direction. Probabilities are from 0 to 1.
 struct DirectionFaults {
     double loss = 0, duplicate = 0, reorder = 0, cut = 0;
-    std::int64_t delay_ns = 0;        ///< of each packet
-    double jitter_ns = 0;             ///< standard deviation of a normal distribution on top
+    std::int64_t delay_ns = 0;        ///< constant delay of each packet
+    double jitter_ns = 0;             ///< standard deviation of an additional normally distributed delay
     double burst = 0;                 ///< probability that a burst begins
-    unsigned burst_packets = 0;       ///< packets of a burst
-    std::int64_t burst_delay_ns = 0;  ///< of the packets of a burst; 0: they are lost
-    std::int64_t start_ns = 0;        ///< nothing of this happens before
+    unsigned burst_packets = 0;       ///< number of packets in a burst
+    std::int64_t burst_delay_ns = 0;  ///< delay of the packets in a burst; 0: they are lost
+    std::int64_t start_ns = 0;        ///< no faults before this time
 };
 
 enum class FaultType : std::uint8_t {
     RESET,        ///< registers as at power-up
-    POWER_OFF,    ///< the same, without answers for a time
+    POWER_OFF,    ///< as RESET, and no answers for a time
     WATCHDOG,     ///< the watchdog bites
-    LINK_DOWN,    ///< all packets of a time are lost
-    SECOND_HOST,  ///< another host reads registers and counters during a time
+    LINK_DOWN,    ///< all packets are lost for a time
+    SECOND_HOST,  ///< another host reads registers and counters for a time
 };
 
 struct FaultEvent {
     FaultType type = FaultType::RESET;
     std::int64_t at_ns = 0, duration_ns = 0;
-    std::int64_t period_ns = 0;  ///< of the reads of the second host
+    std::int64_t period_ns = 0;  ///< interval of the reads of the second host
 };
 
 struct FaultPlan {
@@ -59,12 +59,13 @@ struct Delivery {
 class FaultyDirection {
   public:
     FaultyDirection(const DirectionFaults &faults, std::uint64_t seed);
-    /// When and how often a packet that is sent now arrives. Packets overtake each other only by `reorder`.
+    /// Arrival times of a packet that is sent now, one for each copy. Packets overtake each other only by
+    /// `reorder`.
     std::vector<Delivery> pass(std::vector<std::byte> bytes, std::int64_t now_ns, int host);
 
   private:
     bool happens(double probability);
-    /// The delay of one packet; a negative one: it is lost.
+    /// The delay of one packet; negative if it is lost.
     std::int64_t delay();
 
     DirectionFaults faults_;

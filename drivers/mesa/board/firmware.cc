@@ -12,11 +12,11 @@ constexpr std::uint8_t OUTPUT = 0x80;
 constexpr std::uint8_t STEP_PIN = 0x81, PWM_PIN = 0x81;
 constexpr std::uint8_t ENCODER_A = 1, ENCODER_B = 2, ENCODER_Z = 3;
 constexpr unsigned DPLL_TIMERS = 4;
-/// Bounds the work of a long time without requests.
+/// Limits the work for a long time without requests.
 constexpr std::int64_t MAX_SPANS = 100'000;
 constexpr std::uint32_t FIRST_SERIAL_NUMBER = 0x1000'0001;
 
-/// The watchdog or a DPLL timer acts.
+/// An event of the watchdog or of a DPLL timer.
 struct TimedEvent {
     std::int64_t time_ns = 0;
     unsigned timer = 0;  ///< 0: the watchdog bites
@@ -112,7 +112,7 @@ Module *Firmware::add_inputs(const ModuleDescriptor &descriptor, std::uint32_t c
             return pin.secondary == descriptor.gtag && ((pin.secondary_pin & OUTPUT) != 0) == is_output;
         });
     };
-    // InMux reads its inputs one after the other over one pin; its outputs are the address.
+    // InMux reads its inputs one after the other through one pin; its outputs are the address.
     const std::ptrdiff_t inputs = descriptor.gtag == Gtag::IN_MUX
                                       ? std::ptrdiff_t{1} << std::min<std::ptrdiff_t>(count(true), 5)
                                       : count(false);
@@ -232,7 +232,8 @@ void Firmware::advance(std::int64_t to_ns) {
         }
     }
     for (unsigned timer = 1; dpll_ != nullptr && timer <= DPLL_TIMERS; ++timer) {
-        // Of several times of a timer only the last one matters: nothing reads what was latched before.
+        // If a timer fires several times only the last time matters, because earlier latched values are not
+        // read.
         if (const auto fires_ns = dpll_->last_fire_ns(timer, to_ns); fires_ns.has_value()) {
             events.push_back({*fires_ns, timer});
         }

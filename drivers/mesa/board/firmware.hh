@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The HostMot2 register space of a board: its modules, its pins, and what is connected to them.
+// The HostMot2 registers of a board: its modules, its pins, and the hardware connected to them.
 #pragma once
 
 #include <map>
@@ -29,27 +29,27 @@ namespace mw::mesa::board {
 /// The registers from power-up on. Time advances only by advance(). [one thread]
 class Firmware {
   public:
-    /// `physics` is the hardware at the pins; it outlives the firmware, as motors outlive a reset.
+    /// `physics` is the hardware at the pins; it must outlive the firmware, as motors outlive a reset.
     Firmware(const Idrom &idrom, Physics &physics, std::int64_t power_up_ns);
 
-    /// Advances the time to `to_ns`: watchdog and DPLL timers act at their own times. An earlier time than
-    /// the current one has no effect.
+    /// Advances the time to `to_ns`. Watchdog and DPLL timers act at their own times. A time before the
+    /// current one has no effect.
     void advance(std::int64_t to_ns);
     std::uint32_t read(std::uint16_t address);
     void write(std::uint16_t address, std::uint32_t value);
-    /// The watchdog bites now, if there is one.
+    /// The watchdog bites now, if the firmware has one.
     void bite();
 
-    /// Connects a pin to a level from outside; empty: to the physics.
+    /// Connects a pin to an external level; empty: to the physics.
     void set_input(unsigned pin, std::optional<bool> level);
     /// The level of an input that is read over the multiplexer of InMux; low at power-up.
     void set_multiplexed_input(unsigned input, bool level);
     bool pin_level(unsigned pin) const { return ports_.level(pin); }
-    /// Whether the board drives the pin.
+    /// The output state of a pin.
     Drive pin_drive(unsigned pin) const { return ports_.drive(pin); }
     std::int64_t now_ns() const { return now_ns_; }
 
-    /// The modules of these types; nullptr or empty where the firmware has none.
+    /// The modules of these types; nullptr or empty if the firmware has none.
     const StepgenModule *stepgen() const { return stepgen_; }
     const EncoderModule *encoder() const { return encoder_; }
     const WatchdogModule *watchdog() const { return watchdog_; }
@@ -90,12 +90,12 @@ class Firmware {
     Idrom idrom_;
     Physics &physics_;
     std::vector<std::uint32_t> identity_;  ///< the registers of the description, by word
-    std::vector<Slot> slots_;              ///< by word
+    std::vector<Slot> slots_;              ///< slots by word
     std::vector<std::unique_ptr<Module>> modules_;
-    std::vector<Module *> pin_modules_;  ///< by pin: the module that can use it
+    std::vector<Module *> pin_modules_;  ///< the module that can use each pin
     std::vector<std::optional<bool>> inputs_;
     std::uint32_t multiplexed_inputs_ = 0;
-    std::map<Gtag, std::shared_ptr<SerialLines>> lines_;  ///< by the type of the transmitter
+    std::map<Gtag, std::shared_ptr<SerialLines>> lines_;  ///< lines by type of the transmitter
     IoPorts ports_;
     WatchdogModule *watchdog_ = nullptr;
     StepgenModule *stepgen_ = nullptr;

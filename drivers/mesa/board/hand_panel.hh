@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a person sees and touches at a simulated board: positions of the motors, and switches pressed by hand.
-// It is a file that another program maps as well.
+// The part of a simulated board that a person sees and touches: positions of the motors, and switches pressed
+// by hand. It is a file that another program maps, too.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace mw::mesa::board {
 struct HandPanelPage {
     static constexpr std::size_t MOTORS = 16, SWITCHES = 64;
     double position_rev[MOTORS] = {};
-    /// 0: by the position of the motor, 1: contact closed, 2: contact open.
+    /// 0: set by the position of the motor, 1: contact closed, 2: contact open.
     std::uint8_t contact[SWITCHES] = {};
 };
 

@@ -10,7 +10,7 @@
 
 namespace mw::mesa::board {
 
-/// Number of packets at each end.
+/// Number of packets at both ends.
 struct LinkCounts {
     std::uint64_t sent = 0, executed = 0, replies = 0, received = 0;
 };
@@ -18,7 +18,7 @@ struct LinkCounts {
 /// Times do not decrease. [one thread]
 class Link {
   public:
-    /// `board` outlives the link.
+    /// `board` must outlive the link.
     Link(Board &board, FaultPlan plan);
 
     /// A host sends a packet at `now_ns`.
@@ -27,11 +27,11 @@ class Link {
     void run_until(std::int64_t now_ns);
     /// The next reply that has arrived at its host by `now_ns`.
     std::optional<Delivery> receive(std::int64_t now_ns);
-    /// Time of the next event; empty: none without a new packet.
+    /// Time of the next event; empty if there is none without a new packet.
     std::optional<std::int64_t> next_ns() const;
     /// Executes an event now; events of the plan need no call.
     void perform(const FaultEvent &event);
-    /// The faults of both directions from now on.
+    /// Sets the faults of both directions from now on.
     void disturb(const DirectionFaults &to_board, const DirectionFaults &to_host, std::uint64_t seed);
     const LinkCounts &counts() const { return counts_; }
 

@@ -153,7 +153,8 @@ void read_pin(TableLine &line, Model &model) {
     }
 }
 
-/// The parts of the description that a driver checks, so that a model cannot be one that it rejects.
+/// Checks the parts of the description that a driver checks, so that no model is accepted that a driver would
+/// reject.
 Result<> check(const Model &model, const std::string &file) {
     const auto encoded = encode_idrom(model.idrom);
     if (!encoded.has_value()) {
@@ -246,7 +247,8 @@ Result<std::string> write_model(const Model &model) {
                                 model.card_name, again.error().str()));
     }
     Idrom idrom = model.idrom;
-    idrom.header.modules_offset = again->idrom.header.modules_offset;  // where the lists are does not matter
+    // the position of the lists is not compared
+    idrom.header.modules_offset = again->idrom.header.modules_offset;
     idrom.header.pins_offset = again->idrom.header.pins_offset;
     if (again->idrom != idrom) {
         return fail(

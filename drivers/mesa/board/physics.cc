@@ -12,7 +12,7 @@ namespace {
 
 /// Time step in which a PWM motor is assumed to move uniformly.
 constexpr std::int64_t SPAN_NS = 100'000;
-/// Bounds the work of a long time without requests.
+/// Limits the work for a long time without requests.
 constexpr std::int64_t MAX_SPANS = 10'000;
 
 }  // namespace
@@ -147,7 +147,7 @@ std::optional<bool> Physics::switch_level(unsigned pin) const {
         if (one.pin != pin || one.remote.has_value() || one.multiplexed) {
             continue;
         }
-        // Several switches at a pin are parallel: each of them can close it.
+        // Several switches at a pin are parallel: each of them can close the circuit.
         const bool own = level_of(one);
         level = !level.has_value() || own == one.closed_level ? own : level;
     }

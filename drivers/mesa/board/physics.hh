@@ -18,7 +18,7 @@
 namespace mw::mesa::board {
 
 enum class MotorType : std::uint8_t {
-    STEPPER,  ///< follows each step at once
+    STEPPER,  ///< follows each step immediately
     PWM,      ///< speed follows the duty with a first-order lag
 };
 
@@ -26,10 +26,10 @@ enum class MotorType : std::uint8_t {
 struct MotorPlan {
     std::string name;
     MotorType type = MotorType::STEPPER;
-    unsigned unit = 0;  ///< of the step generator or of the PWM generator
+    unsigned unit = 0;  ///< number of the step generator or of the PWM generator
     std::int64_t steps_per_rev = 200;
     double full_rev_s = 1;       ///< speed at a duty of 1 [rev/s]
-    double time_constant_s = 0;  ///< of the lag
+    double time_constant_s = 0;  ///< time constant of the lag
     double start_rev = 0;
 };
 
@@ -48,12 +48,13 @@ struct RemoteChannel {
 };
 
 struct SwitchPlan {
-    unsigned pin = 0;          ///< of the whole board, bit of the field Input of `remote`, or input of InMux
+    unsigned pin = 0;          ///< pin of the whole board, bit of the field Input of `remote`, or input of
+                               ///< InMux
     bool multiplexed = false;  ///< at an input of InMux
     std::optional<RemoteChannel> remote{};
     std::size_t motor = 0;
     double at_rev = 0;
-    bool above = false;        ///< it is closed above `at_rev`; else below
+    bool above = false;        ///< closed above `at_rev`; otherwise below it
     bool closed_level = true;  ///< level of the pin while it is closed
 };
 
@@ -62,21 +63,21 @@ struct ResolverPlan {
     unsigned channel = 0;
     std::size_t motor = 0;
     std::int64_t cycles_per_rev = 1;
-    double zero_rev = 0;  ///< where its angle is 0
+    double zero_rev = 0;  ///< position at which its angle is 0
 };
 
 /// A smart serial card on a channel.
 struct RemotePlan {
     unsigned port = 0, channel = 0;
-    std::string card;  ///< the key of a RemoteCard
+    std::string card;  ///< key of a RemoteCard
 };
 
 /// Value of an input of a smart serial card, as bits of the card.
 struct FieldPlan {
     RemoteChannel remote;
-    std::string name;                    ///< of the field, as the card has it
-    std::uint32_t value = 0;             ///< without a motor
-    std::optional<std::size_t> motor{};  ///< its counts
+    std::string name;                    ///< name of the field in the card
+    std::uint32_t value = 0;             ///< value if there is no motor
+    std::optional<std::size_t> motor{};  ///< motor whose counts are the value
     std::int64_t counts_per_rev = 0;
 };
 
@@ -100,8 +101,8 @@ Result<PhysicsPlan> parse_physics(std::string_view text, const std::string &file
 
 /// Inputs of the motors in a time step without changes.
 struct DriveInputs {
-    std::vector<std::int64_t> steps;  ///< of each step generator whose pins drive
-    std::vector<double> duties;       ///< of each PWM generator whose pins drive
+    std::vector<std::int64_t> steps;  ///< steps of each step generator whose pins are driven
+    std::vector<double> duties;       ///< duty of each PWM generator whose pins are driven
 };
 
 /// The motors at the current time. [one thread]
@@ -110,12 +111,12 @@ class Physics {
     explicit Physics(PhysicsPlan plan);
 
     using OnMove = std::function<void(unsigned encoder, const ShaftMove &move)>;
-    /// Advances the time and reports how the shafts of the encoders moved.
+    /// Advances the time and reports the movements of the encoder shafts.
     void advance(std::int64_t from_ns, std::int64_t to_ns, const DriveInputs &inputs, const OnMove &on_move);
 
-    /// The shaft of an encoder, when one is connected.
+    /// The shaft of an encoder, if one is connected.
     std::optional<Shaft> shaft(unsigned encoder) const;
-    /// The electrical revolutions of a resolver, when one is connected.
+    /// The electrical revolutions of a resolver, if one is connected.
     std::optional<double> resolver_rev(unsigned channel) const;
     /// The level of a pin with one or more switches.
     std::optional<bool> switch_level(unsigned pin) const;
@@ -123,7 +124,7 @@ class Physics {
     bool level_of(const SwitchPlan &one) const;
     /// Value of a field of a smart serial card.
     std::uint32_t field_value(const FieldPlan &field) const;
-    /// `levels` of the inputs of InMux with the levels of the switches there.
+    /// `levels` of the inputs of InMux, with the levels of the switches connected there.
     std::uint32_t multiplexed_levels(std::uint32_t levels) const;
     /// The position of the motor with that index in the plan [rev].
     double position_rev(std::size_t motor) const;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double FAR_REV = 1e9;
 
-/// How many instances of the modules with one of these types a firmware has.
+/// Number of instances of modules of these types in a firmware.
 unsigned instances_of(const Idrom &idrom, std::initializer_list<Gtag> gtags) {
     unsigned count = 0;
     for (const ModuleDescriptor &module : idrom.modules) {

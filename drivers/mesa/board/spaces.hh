@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The memory spaces of LBP16 beside the HostMot2 registers: plain memory with an information area. Source:
-// shared/hardware.md, part A1.
+// The memory spaces of LBP16 other than the HostMot2 registers: plain memory with an information area.
+// Source: shared/hardware.md, part A1.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct SpaceFacts {
     std::uint32_t bytes = 0;
 
     bool isWritable() const { return (size_word & 0x8000U) != 0; }
-    /// The space can be read in units of that size.
+    /// True if the space can be read in units of that size.
     bool permits(lbp16::Unit unit) const { return (size_word & lbp16::bytes_of(unit)) != 0; }
 };
 
@@ -52,7 +52,7 @@ enum class ErrorBit : std::uint8_t { PARSE = 1, MEMORY = 2, WRITE = 4, RECEIVED_
 std::uint16_t word_at(const std::vector<std::byte> &memory, std::size_t address);
 void set_word(std::vector<std::byte> &memory, std::size_t address, std::uint16_t value);
 
-/// The EEPROM as it leaves the factory: MAC address, name of the card, IP address 192.168.1.121.
+/// The EEPROM as delivered: MAC address, name of the card, IP address 192.168.1.121.
 std::vector<std::byte> factory_eeprom(const Model &model);
 /// Space 7: name of the card, versions, jumpers (1: IP address from the EEPROM).
 std::vector<std::byte> board_information(const Model &model);
@@ -61,9 +61,9 @@ std::vector<std::byte> board_information(const Model &model);
 class Flash {
   public:
     explicit Flash(std::uint8_t id);
-    /// Reading data moves the address on by 4.
+    /// Reading data increments the address by 4.
     std::uint32_t read(std::uint16_t address);
-    /// Only the address register is not protected.
+    /// All except the address register is protected.
     static bool isProtected(std::uint16_t address) { return address != 0; }
     /// Writing data clears bits, as flash does.
     void write(std::uint16_t address, std::uint32_t value);

@@ -22,7 +22,7 @@ namespace mw::mesa::board {
 namespace {
 
 constexpr std::size_t MAX_DATAGRAM = 2048;
-/// Replies go to one of the hosts that sent last.
+/// Replies are sent to one of the hosts that sent last.
 constexpr std::size_t MAX_HOSTS = 64;
 /// Maximum delay of a stop signal that arrives just before a wait [ns].
 constexpr std::int64_t MAX_WAIT_NS = 200'000'000;
@@ -61,7 +61,7 @@ bool hasRead(std::span<const std::byte> packet) {
     return false;
 }
 
-/// The addresses of the hosts by their numbers.
+/// The addresses of the hosts, by number.
 class Hosts {
   public:
     int number_of(const sockaddr_in &address) {
@@ -133,7 +133,7 @@ class Server {
             if (size < 0 && (errno == EAGAIN || errno == EINTR)) {
                 return {};
             }
-            // A host has closed its port: the kernel reports that an earlier reply was not accepted.
+            // A host has closed its port, and the kernel reports that an earlier reply was not accepted.
             if (size < 0 && errno == ECONNREFUSED) {
                 continue;
             }
@@ -153,7 +153,7 @@ class Server {
     void send_replies() {
         while (const auto reply = link_.receive(now_ns())) {
             const sockaddr_in &to = hosts_[reply->host];
-            // A reply that the kernel does not take is lost, as on a cable.
+            // A reply that the kernel does not accept is lost, as on a cable.
             sendto(descriptor_, reply->bytes.data(), reply->bytes.size(), 0,
                    reinterpret_cast<const sockaddr *>(&to), sizeof to);
         }

@@ -16,7 +16,7 @@ struct ServerSettings {
     std::uint16_t port = lbp16::BOARD_PORT;
     bool virtual_time = false;  ///< each request with a read advances the time by `period_ns`
     std::int64_t period_ns = 1'000'000;
-    std::function<void()> listening;  ///< called once, when packets are answered from now on
+    std::function<void()> listening;  ///< called once, when packets are answered
 };
 
 /// "ADDRESS:PORT" or "ADDRESS".

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The part of the direct bus that the servo thread runs.
+// The functions of the direct bus that the servo thread runs.
 #include "drivers/mesa/direct/direct_bus.hh"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace mw::mesa {
 
 namespace {
 
-/// Words of the description that a cycle compares.
+/// Number of words of the description compared in a cycle.
 constexpr std::size_t COMPARED_IN_CYCLE = 16;
 
 }  // namespace
@@ -83,8 +83,8 @@ CycleRead DirectBus::read(std::span<std::uint32_t> values, long /*period_ns*/) n
 }
 
 bool DirectBus::write(std::span<const RegisterWrite> writes) noexcept {
-    // Without an answer in this cycle nothing is written: the write would be lost, or, after a reset by the
-    // operator, the driver would not have seen that the watchdog has bitten.
+    // Nothing is written without an answer in this cycle: the write would be lost, or, after a reset by the
+    // operator, the driver would not have detected a bite of the watchdog.
     if (!answered_) {
         return false;
     }

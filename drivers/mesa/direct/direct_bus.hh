@@ -2,10 +2,10 @@
 // The registers of a board on PCI, EPP or SPI, for the driver.
 //
 // These buses do not report whether a board answers: a board without power reads as all zeros or all ones. So
-// each cycle reads the cookie of the firmware, too, and has failed when it is not there. After too many
-// failures in a row, or when io_error is set, there is no traffic until an operator resets the fault.
-// Then the description of the firmware is compared with that of the load, a part in each cycle, before
-// anything is written. Source: shared/hardware.md, part G.
+// each cycle also reads the cookie of the firmware, and fails if it is wrong. After too many failures in a
+// row, or when io_error is set, there is no traffic until an operator resets the fault. Then the description
+// of the firmware is compared with the one read at loading, a part in each cycle, before anything is written.
+// Source: shared/hardware.md, part G.
 #pragma once
 
 #include <cstdint>
@@ -18,21 +18,21 @@
 
 namespace mw::mesa {
 
-/// A card, as known to its bus.
+/// Data of a card that its bus knows.
 struct DirectCard {
     std::string hal_name{};                 ///< 5i25
-    std::vector<std::string> connectors{};  ///< one for each port; empty: as the firmware says
-    int port_width = 0;                     ///< 0: as the firmware says
+    std::vector<std::string> connectors{};  ///< one for each port; empty: as in the firmware
+    int port_width = 0;                     ///< 0: as in the firmware
     int leds = 0;
     int most_failures = 1;  ///< consecutive failed cycles that stop the traffic
 };
 
-/// Why a cycle has failed.
+/// Reason why a cycle has failed.
 enum class DirectFault : std::uint8_t {
     NONE,
     ACCESS,       ///< the bus reports an error
-    NO_COOKIE,    ///< the values read are not from the firmware
-    OTHER_BOARD,  ///< after a reset by the operator: not the board of the load
+    NO_COOKIE,    ///< the values are not from the firmware
+    OTHER_BOARD,  ///< after a reset by the operator: another board than at loading
 };
 
 class DirectBus final : public RegisterBus {
@@ -51,7 +51,7 @@ class DirectBus final : public RegisterBus {
     void pause_now(std::chrono::nanoseconds duration) override { access_->pause(duration); }
     Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) override;
 
-    /// The read of a cycle needs no request before it.
+    /// The read of a cycle needs no request.
     void request() noexcept override {}
     CycleRead read(std::span<std::uint32_t> values, long period_ns) noexcept override;
     bool redirect(int range, std::uint16_t address) noexcept override;
@@ -67,7 +67,7 @@ class DirectBus final : public RegisterBus {
 
     bool isFailed() const noexcept { return fault_ != DirectFault::NONE; }
     bool isStopped() const noexcept { return link_ == Link::STOPPED; }
-    /// Of the last cycle.
+    /// Fault of the last cycle.
     DirectFault fault() const noexcept { return fault_; }
     int last_error() const noexcept { return access_->last_error(); }
     /// The word that was read instead of the cookie.
@@ -78,7 +78,7 @@ class DirectBus final : public RegisterBus {
         link_ = Link::STOPPED;
         answered_ = false;
     }
-    /// An operator resets the fault: the board is compared and then served again. [servo thread]
+    /// The operator has reset the fault: the board is compared and then served again. [servo thread]
     void resume() noexcept;
 
   private:
@@ -96,15 +96,15 @@ class DirectBus final : public RegisterBus {
     DirectCard card_;
     std::string place_;
 
-    std::vector<RegisterRange> ranges_;  ///< the cookie, then those of set_lists()
-    std::vector<std::uint32_t> values_;  ///< of all ranges
+    std::vector<RegisterRange> ranges_;  ///< the cookie, then the ranges of set_lists()
+    std::vector<std::uint32_t> values_;  ///< values of all ranges
     std::uint16_t idrom_address_ = 0;
     std::vector<std::uint32_t> identity_;  ///< the description of the firmware
     std::size_t compared_ = 0;             ///< number of words compared so far
 
     Link link_ = Link::RUNNING;
     DirectFault fault_ = DirectFault::NONE;
-    bool answered_ = false;  ///< the last read was successful, so that a write may follow
+    bool answered_ = false;  ///< the last read was successful, so a write may follow
     bool rewriting_ = false;
     int failures_ = 0;  ///< consecutive failures
     std::uint32_t failed_cycles_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Loading of the direct bus: it may allocate memory.
+// Loading of the direct bus; these functions may allocate memory.
 #include <algorithm>
 #include <cstring>
 

@@ -8,7 +8,7 @@
 
 namespace mw::mesa {
 
-/// Takes io_error before a read and shows the result after it. In HAL memory.
+/// Reads io_error before a read and shows the result after it. In HAL memory.
 class DirectPins {
   public:
     /// [while loading]
@@ -20,8 +20,8 @@ class DirectPins {
         rtapi_snprintf(name_.text, sizeof name_.text, "%s", d.prefix());
     }
 
-    /// Setting io_error, by an operator or HAL, stops the traffic; clearing it lets the board be compared and
-    /// served again. [servo thread]
+    /// When io_error is set, by an operator or by HAL, the traffic stops; when it is reset, the board is
+    /// compared and served again. [servo thread]
     void before(DirectBus &bus) noexcept {
         if (io_error_ && !bus.isStopped()) {
             bus.stop();
@@ -30,7 +30,7 @@ class DirectPins {
         }
     }
 
-    /// After the read or the write of a cycle. [servo thread]
+    /// Called after the read or the write of a cycle. [servo thread]
     void after(const DirectBus &bus) noexcept {
         const bool failed = bus.isFailed() || bus.isStopped();
         if (bus.isFailed() && !bus_error_) {
@@ -48,7 +48,7 @@ class DirectPins {
     }
 
   private:
-    /// One message for a burst of failures.
+    /// Writes one message for a burst of failures.
     void tell(const DirectBus &bus) const noexcept {
         switch (bus.fault()) {
         case DirectFault::NONE: break;

@@ -13,7 +13,7 @@
 
 namespace mw::mesa {
 
-/// How many writes from the first on are to consecutive addresses, at most `most`.
+/// Number of writes from the first one on that have consecutive addresses, at most `most`.
 inline std::size_t consecutive_writes(std::span<const RegisterWrite> writes, std::size_t most) noexcept {
     std::size_t count = std::min<std::size_t>(writes.size(), 1);
     while (count < std::min(writes.size(), most) &&
@@ -23,19 +23,19 @@ inline std::size_t consecutive_writes(std::span<const RegisterWrite> writes, std
     return count;
 }
 
-/// Each access is done when the call returns. After a failed one the registers may or may not be written.
+/// Each access is complete when the call returns. After a failure the registers may or may not be written.
 /// [while loading, and then the servo thread]
 class RegisterAccess {
   public:
     virtual ~RegisterAccess() = default;
 
-    /// Consecutive registers from `address`; false: failed.
+    /// Reads consecutive registers from `address`; false on failure.
     virtual bool read(std::uint16_t address, std::span<std::uint32_t> values) noexcept = 0;
     virtual bool write(std::uint16_t address, std::span<const std::uint32_t> values) noexcept = 0;
 
     /// Allocates the buffers for the reads and writes of a cycle. [while loading]
     virtual Result<> prepare(std::span<const RegisterRange> /*reads*/, int /*max_writes*/) { return {}; }
-    /// All ranges, in their order.
+    /// Reads all ranges, in their order.
     virtual bool read_list(std::span<const RegisterRange> ranges, std::span<std::uint32_t> values) noexcept {
         for (const RegisterRange &range : ranges) {
             if (!read(range.address, values.first(range.count))) {
@@ -45,7 +45,7 @@ class RegisterAccess {
         }
         return true;
     }
-    /// All registers, in their order.
+    /// Writes all registers, in their order.
     virtual bool write_list(std::span<const RegisterWrite> writes) noexcept {
         constexpr std::size_t MAX_BLOCK = 32;
         while (!writes.empty()) {
@@ -63,9 +63,9 @@ class RegisterAccess {
     }
     /// Waits, in the time of the board. [while loading]
     virtual void pause(std::chrono::nanoseconds duration) { std::this_thread::sleep_for(duration); }
-    /// Another thread may use it at the same time, such as on PCI.
+    /// True if another thread may use it at the same time, as on PCI.
     virtual bool isImmediate() const noexcept { return false; }
-    /// The errno of the last failure; 0: the access has none.
+    /// The errno of the last failure; 0 if the access does not report errors.
     virtual int last_error() const noexcept { return 0; }
 };
 

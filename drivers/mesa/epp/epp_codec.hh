@@ -15,13 +15,13 @@ enum class Register : std::uint8_t { DATA = 0, STATUS = 1, CONTROL = 2, EPP_ADDR
 constexpr std::uint8_t TIMEOUT = 1;
 /// The control register: all lines inactive, data are outputs.
 constexpr std::uint8_t CONTROL_IDLE = 4;
-/// The ECP control register (at 2 from its own base): EPP mode, no interrupts and no DMA.
+/// The ECP control register (offset 2 from its base): EPP mode, no interrupts and no DMA.
 constexpr std::uint8_t ECR_EPP = 0x94;
-/// The high byte of an address with this bit: the board counts the address on with each byte.
+/// The high byte of an address with this bit: the board increments the address with each byte.
 constexpr std::uint8_t AUTO_INCREMENT = 0x80;
 
-/// The two address bytes, in their order. An access of data ends an address, so that the next byte is a low
-/// one.
+/// The two address bytes, in their order. A data access ends an address, so the next address byte is a low
+/// byte.
 constexpr std::array<std::uint8_t, 2> address_bytes(std::uint16_t address) noexcept {
     return {static_cast<std::uint8_t>(address & 0xFFU),
             static_cast<std::uint8_t>((address >> 8U) | AUTO_INCREMENT)};

@@ -13,7 +13,7 @@ class Port {
     virtual ~Port() = default;
     virtual std::uint8_t read(Register reg) noexcept = 0;
     virtual void write(Register reg, std::uint8_t value) noexcept = 0;
-    /// An access of 32 bits to the data register: the port makes four EPP accesses, the lowest byte first.
+    /// An access of 32 bits to the data register. The port makes four EPP accesses, lowest byte first.
     virtual std::uint32_t read_wide() noexcept = 0;
     virtual void write_wide(std::uint32_t value) noexcept = 0;
 };

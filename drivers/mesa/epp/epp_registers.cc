@@ -7,9 +7,9 @@ namespace mw::mesa::epp {
 
 void EppRegisters::begin() noexcept {
     port_->write(Register::CONTROL, CONTROL_IDLE);
-    // A time-out of an earlier program.
+    // Clears a time-out of an earlier program.
     (void)finish();
-    // After this access of data the next address byte is a low one.
+    // After this data access the next address byte is a low byte.
     port_->write(Register::EPP_ADDRESS, 0);
     (void)port_->read(Register::EPP_DATA);
     (void)finish();

@@ -9,7 +9,7 @@
 
 namespace mw::mesa::epp {
 
-/// Whether the port accepts 32 bits at once.
+/// Whether the port accepts 32 bits in one access.
 enum class Width : std::uint8_t { BYTES, WIDE };
 
 class EppRegisters final : public RegisterAccess {

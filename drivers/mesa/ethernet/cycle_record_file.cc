@@ -56,7 +56,7 @@ std::string text_of(const std::array<char, N> &from) {
     return {from.data(), ::strnlen(from.data(), N)};
 }
 
-/// Cycles of a ring, the oldest first, without those that the writer may have changed during the copy.
+/// Cycles of a ring, oldest first, without those that the writer may have changed during the copy.
 std::vector<CycleTimes> copy(const CycleRing &ring, bool growing) {
     const std::uint64_t before = ring.count();
     std::vector<CycleTimes> cycles;
@@ -70,7 +70,7 @@ std::vector<CycleTimes> copy(const CycleRing &ring, bool growing) {
         cycles.erase(cycles.begin(), cycles.begin() + lost);
     }
     if (growing && !cycles.empty()) {
-        cycles.pop_back();  // the writer has not finished it
+        cycles.pop_back();  // the writer has not finished this record
     }
     return cycles;
 }

@@ -10,7 +10,7 @@ namespace mw::mesa {
 
 namespace {
 
-/// Every packet that a fast network carries needs less. Source: shared/hardware.md, part A4.
+/// Packets on a fast network need less. Source: shared/hardware.md, part A4.
 constexpr std::int64_t SLOW_SEND_NS = 200'000;
 
 TimeFigures figures_of_times(std::vector<std::int64_t> times) {
@@ -40,7 +40,7 @@ void count_outcome(const CycleTimes &cycle, CycleFigures &figures) {
 }
 
 bool hasCounters(const CycleTimes &cycle) {
-    // Without the counter it was the comparison of the board after a fault.
+    // A cycle without the counter was the comparison of the board after a fault.
     return cycle.board_packets != 0 &&
            (cycle.outcome == CycleOutcome::DONE || cycle.outcome == CycleOutcome::WRITE_LOST);
 }

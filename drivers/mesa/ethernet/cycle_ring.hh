@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The last cycles of a board with their times, which show who was late: the thread, the kernel, the network
-// or the board. They lie in memory that another process can read, also after the driver has ended.
+// The last cycles of a board with their times, which show whether the thread, the kernel, the network or the
+// board was late. Another process can read this memory, also after the driver has ended.
 #pragma once
 
 #include <array>
@@ -13,29 +13,29 @@ namespace mw::mesa {
 enum class CycleOutcome : std::uint8_t {
     DONE,
     NO_ANSWER,    ///< no answer before the deadline
-    SEND_FAILED,  ///< the kernel did not accept the request; `error` says why
+    SEND_FAILED,  ///< the kernel did not accept the request; the reason is in `error`
     RECEIVE_FAILED,
     SHORT_ANSWER,  ///< an answer of the wrong size
-    WRITE_LOST,    ///< the answer came, but the board has not had the last write
-    OTHER_BOARD,   ///< after a fault: the board is not the one that was loaded
+    WRITE_LOST,    ///< the answer arrived, but the board has not received the last write
+    OTHER_BOARD,   ///< after a fault: the board is not the one at loading
 };
 
-/// Times are monotonic [ns]; 0: it did not happen.
+/// Monotonic times [ns]; 0: the event did not happen.
 struct CycleTimes {
     std::int64_t begin_ns = 0;     ///< the thread began its cycle
     std::int64_t sent_ns = 0;      ///< the request was passed to the kernel
     std::int64_t answered_ns = 0;  ///< the answer arrived
     std::int64_t written_ns = 0;   ///< the write packet was passed to the kernel
-    std::uint32_t number = 0;      ///< of the request
+    std::uint32_t number = 0;      ///< number of the request
     std::int32_t error = 0;        ///< errno
-    std::uint16_t stale = 0;       ///< older answers that arrived meanwhile
-    /// Packets that the host has sent, this request included, and packets that the board has received
-    /// (0 without an answer). Both run over.
+    std::uint16_t stale = 0;       ///< older answers that arrived before it
+    /// Packets that the host has sent, this request included, and packets that the board has received (0
+    /// without an answer). Both counters wrap.
     std::uint16_t host_packets = 0, board_packets = 0;
     CycleOutcome outcome = CycleOutcome::DONE;
 };
 
-/// Keeps the last SIZE cycles. [one writer]
+/// Stores the last SIZE cycles. [one writer]
 class CycleRing {
   public:
     static constexpr std::size_t SIZE = 10'000;
@@ -51,7 +51,7 @@ class CycleRing {
     /// The record of the cycle `age` cycles ago; 0: the last one. `age` is below size().
     const CycleTimes &at(std::size_t age) const noexcept { return cycles_[(count() - 1 - age) % SIZE]; }
     std::size_t size() const noexcept { return count() < SIZE ? count() : SIZE; }
-    /// Cycles since the beginning. Acquires what was written before it.
+    /// Number of cycles since the beginning. Acquires the data written before it.
     std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
     void clear() noexcept { count_.store(0, std::memory_order_release); }
 
@@ -79,14 +79,14 @@ struct CycleRecord {
     std::array<char, 48> address{};  ///< ADDRESS or ADDRESS:PORT
     std::atomic<std::int64_t> period_ns{0};
     std::atomic<std::uint32_t> current{
-        0};  ///< the ring to which cycles go; the other one has those before the fault
+        0};  ///< ring that receives cycles; the other ring contains the cycles before the fault
     std::atomic<BoardFault> fault{BoardFault::NONE};
     std::atomic<std::int64_t> fault_ns{0};  ///< monotonic time
     std::array<CycleRing, 2> rings;
 };
 
-/// Writes a record. After a fault the cycles before it are kept, and the next go to the other ring; a fault
-/// within SIZE cycles of the last one is still in that ring and keeps nothing. [servo thread]
+/// Writes a record. After a fault the cycles before it are kept, and the next cycles are written to the other
+/// ring. A fault within SIZE cycles of the last one is still in that ring and keeps nothing. [servo thread]
 class CycleLog {
   public:
     explicit CycleLog(CycleRecord &record) noexcept : record_(&record) {}
@@ -95,7 +95,7 @@ class CycleLog {
         last_ = &ring().next();
         return *last_;
     }
-    /// The last cycle, also when a fault has been kept since; there has been one.
+    /// The last cycle, also if a fault was kept after it; there must be one.
     CycleTimes &last() noexcept { return *last_; }
     const CycleTimes &last() const noexcept { return *last_; }
     bool isEmpty() const noexcept { return last_ == nullptr; }

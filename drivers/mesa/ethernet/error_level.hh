@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// When single failed cycles become a fault. Source: shared/hardware.md, part A3.
+// The rule by which failed cycles become a fault. Source: shared/hardware.md, part A3.
 #pragma once
 
 #include <algorithm>
@@ -9,16 +9,17 @@ namespace mw::mesa {
 
 /// Values of the parameters packet-error-* and packet-read-timeout.
 struct EthernetSettings {
-    int read_timeout = 80;  ///< up to 0: 80 percent of the period; to 99: percent of it; above: nanoseconds
+    int read_timeout = 80;  ///< up to 0: 80 percent of the period; up to 99: percent of the period; above:
+                            ///< nanoseconds
     int error_limit = 10;
     int error_increment = 2;
     int error_decrement = 1;
 };
 
-/// A level that each failed cycle raises and each good one lowers.
+/// A level that each failed cycle increases and each good cycle decreases.
 class ErrorLevel {
   public:
-    /// A cycle has ended. Returns true when the level has just reached the limit.
+    /// Called at the end of a cycle. Returns true when the level has just reached the limit.
     bool count(bool failed, const EthernetSettings &settings) noexcept {
         total_ += failed ? 1U : 0U;
         const bool before = exceeded_;
@@ -28,7 +29,7 @@ class ErrorLevel {
         exceeded_ = before || level_ >= std::max(settings.error_limit, 1);
         return exceeded_ && !before;
     }
-    /// An operator has acknowledged the fault.
+    /// Called when an operator has acknowledged the fault.
     void reset() noexcept {
         level_ = 0;
         exceeded_ = false;
@@ -36,7 +37,7 @@ class ErrorLevel {
 
     int level() const noexcept { return level_; }
     bool isExceeded() const noexcept { return exceeded_; }
-    /// All failed cycles.
+    /// Number of all failed cycles.
     std::uint32_t total() const noexcept { return total_; }
 
   private:
@@ -45,7 +46,7 @@ class ErrorLevel {
     std::uint32_t total_ = 0;
 };
 
-/// How long a cycle waits for the answer [ns], of `period_ns` of the thread.
+/// Time that a cycle waits for the answer [ns], for a thread with `period_ns`.
 constexpr std::int64_t read_timeout_ns(int setting, long period_ns) noexcept {
     constexpr int PERCENT_OF_DEFAULT = 80, LEAST_NANOSECONDS = 100;
     constexpr std::int64_t LEAST_OF_PERCENT_NS = 100'000;

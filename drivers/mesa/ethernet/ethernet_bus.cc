@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The part of the Ethernet bus that the servo thread runs.
+// The functions of the Ethernet bus that the servo thread runs.
 #include "drivers/mesa/ethernet/ethernet_bus.hh"
 
 #include <algorithm>
@@ -13,12 +13,12 @@ using lbp16::PacketWriter;
 
 constexpr std::size_t BOARD_PACKETS_BYTES = 2;
 
-/// Packets that a cycle reads; more can only be a flood of old ones.
+/// Maximum number of packets that a cycle reads; more packets can only be a flood of old ones.
 constexpr int MAX_RECEIVED = 64;
-/// Registers at consecutive addresses that one command writes.
+/// Maximum number of registers at consecutive addresses that one command writes.
 constexpr std::size_t MAX_BLOCK = 64;
 
-/// How many writes from the first on are to consecutive addresses.
+/// Number of writes from the first one on that have consecutive addresses.
 std::size_t block_of(std::span<const RegisterWrite> writes) noexcept {
     std::size_t count = 1;
     while (count < std::min(writes.size(), MAX_BLOCK) &&
@@ -140,7 +140,7 @@ CycleOutcome EthernetBus::outcome_of_answer() noexcept {
     }
     const bool written = numbers_.hasAllWrites(numbers);
     if (isRestart) {
-        numbers_.accept(numbers);  // nothing of the former writes is missing any more: all are
+        numbers_.accept(numbers);  // no former write is missing after this, because all registers are written
     }
     return written ? CycleOutcome::DONE : CycleOutcome::WRITE_LOST;
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The registers of a board on Ethernet: in each cycle one request, one answer and one write packet.
 //
-// Words that the board keeps for its host (space 4) carry numbers: each request and each write packet stores
-// its own, and each answer returns them. So an answer shows to which request it belongs, and whether the last
+// The board stores words for its host (space 4). Each request and each write packet stores its number there,
+// and each answer returns the numbers. So an answer shows to which request it belongs, and whether the last
 // write arrived. Source: shared/hardware.md, part A3.
 //
 // After a fault there is no traffic until an operator resets it. Then the identity of the board is read and
-// compared with that of the load, before anything is written.
+// compared with the one read at loading, before anything is written.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ namespace mw::mesa {
 /// Numbers of failures by type.
 struct EthernetCounters {
     std::uint32_t no_answer = 0, send_failed = 0, receive_failed = 0, short_answer = 0, write_lost = 0;
-    std::uint32_t stale = 0;  ///< answers to older requests; no failure
+    std::uint32_t stale = 0;  ///< answers to older requests; not a failure
 };
 
 class EthernetBus final : public RegisterBus {
@@ -40,7 +40,7 @@ class EthernetBus final : public RegisterBus {
     std::string card_name() const override;
     std::vector<std::string> connectors() const override;
     int port_width() const override;
-    /// The name that the card reports, without spaces at its end.
+    /// The name reported by the card, without trailing blanks.
     const std::string &reported_name() const { return reported_name_; }
     bool isKnownCard() const { return card_ != nullptr; }
     /// The MAC address of the board, the first byte first.
@@ -53,7 +53,7 @@ class EthernetBus final : public RegisterBus {
 
     void request() noexcept override;
     CycleRead read(std::span<std::uint32_t> values, long period_ns) noexcept override;
-    /// Only of a range of one register.
+    /// Only for a range of one register.
     bool redirect(int range, std::uint16_t address) noexcept override;
     bool write(std::span<const RegisterWrite> writes) noexcept override;
     bool take_rewrite() noexcept override;
@@ -63,14 +63,14 @@ class EthernetBus final : public RegisterBus {
     /// May be changed between cycles. [servo thread]
     EthernetSettings settings;
 
-    /// The last cycle has failed.
+    /// True if the last cycle has failed.
     bool isFailed() const noexcept { return failed_; }
     bool isStopped() const noexcept { return link_ == Link::STOPPED; }
     const ErrorLevel &errors() const noexcept { return errors_; }
     const EthernetCounters &counters() const noexcept { return counters_; }
-    /// The last cycle; nullptr before the first.
+    /// The last cycle; nullptr before the first one.
     const CycleTimes *last_cycle() const noexcept { return log_.isEmpty() ? nullptr : &log_.last(); }
-    /// Lets the cycles be written to `record`, which outlives the bus. [while loading]
+    /// Writes the cycles to `record`, which must outlive the bus. [while loading]
     void record_cycles_in(CycleRecord &record) noexcept {
         log_ = CycleLog(record);
         own_record_.reset();
@@ -78,7 +78,7 @@ class EthernetBus final : public RegisterBus {
     void note_watchdog_bite() noexcept override { log_.keep(BoardFault::WATCHDOG, transport_->now_ns()); }
     /// Stops all traffic, as too many failures do. [servo thread]
     void stop() noexcept;
-    /// An operator resets the fault: the board is compared and then served again. [servo thread]
+    /// The operator has reset the fault: the board is compared and then served again. [servo thread]
     void resume() noexcept;
 
   private:
@@ -88,8 +88,8 @@ class EthernetBus final : public RegisterBus {
         STOPPED,    ///< no traffic
         COMPARING,  ///< reads the identity
     };
-    /// A request that lacks only its number, and the bytes of its answer before the numbers. The last two of
-    /// the cyclic one are the number of packets that the board has received.
+    /// A request that is complete except for its number, and the size of its answer before the numbers. The
+    /// last two bytes of the cyclic answer are the number of packets that the board has received.
     struct Request {
         lbp16::PacketWriter packet;
         std::size_t data_bytes = 0;
@@ -111,7 +111,7 @@ class EthernetBus final : public RegisterBus {
 
     Request cyclic_, identity_;
     std::vector<std::size_t>
-        single_offsets_;  ///< of the address of each range in the request; 0: several registers
+        single_offsets_;  ///< offset of the address of each range in the request; 0: several registers
     std::vector<std::byte> known_identity_;
     std::array<std::byte, lbp16::MAX_PACKET_BYTES> answer_{};
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Loading of the Ethernet bus: it may allocate memory and wait.
+// Loading of the Ethernet bus; these functions may allocate memory and wait.
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
@@ -20,7 +20,7 @@ using lbp16::Unit;
 
 constexpr std::int64_t TIMEOUT_NS = 200'000'000;
 constexpr int TRIES = 3;
-/// Answers to earlier requests that are discarded before a new one.
+/// Maximum number of answers to earlier requests that are discarded before a new request.
 constexpr int MOST_OLD = 64;
 constexpr int NAME_WORDS = 8, MAC_WORDS = 3;
 constexpr std::uint16_t MAC_ADDRESS = 2;
@@ -101,7 +101,7 @@ Result<> EthernetBus::identify() {
             "the firmware of the board {} at {} has its description at {:#x}, outside the registers",
             reported_name_, address_, idrom));
     }
-    // 1,110 bytes: it fits one packet.
+    // 1,110 bytes: fits into one packet.
     append_reads(identity_.packet, {.address = COOKIE_ADDRESS, .count = FIRMWARE_REGISTERS});
     append_reads(identity_.packet, {.address = static_cast<std::uint16_t>(idrom), .count = IDROM_REGISTERS});
     append_words(identity_.packet, Space::EEPROM, MAC_ADDRESS, MAC_WORDS);
@@ -119,7 +119,7 @@ std::string EthernetBus::card_name() const {
     if (card_ != nullptr) {
         return std::string(card_->hal_name);
     }
-    // An unknown card is named as it reports itself, up to the first hyphen.
+    // An unknown card gets the name that it reports, up to the first hyphen.
     std::string name = reported_name_.substr(0, reported_name_.find('-'));
     std::ranges::transform(name, name.begin(),
                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -151,7 +151,7 @@ std::vector<std::string> EthernetBus::connectors() const {
 Result<std::vector<std::byte>> EthernetBus::exchange(const PacketWriter &packet, std::string_view what) {
     int error = 0;
     for (int attempt = 0; attempt < TRIES; ++attempt) {
-        // A late answer would be taken for this one.
+        // A late answer would be treated as the answer to this request.
         for (int old = 0; old < MOST_OLD && transport_->receive(answer_).isDone(); ++old) {
         }
         const auto sent = transport_->send(packet.bytes());
@@ -208,7 +208,7 @@ Result<> EthernetBus::write_now(std::uint16_t address, std::span<const std::uint
                                     values.size(), address_));
         }
     }
-    // The board answers a read only, which shows that it has executed the writes before it.
+    // The board answers only reads; the answer shows that it has executed the writes before.
     if (!append_words(packet, Space::CONTROL, 0, 1)) {
         return fail(fmt::format("{} registers are more than one packet to the board at {} holds",
                                 values.size(), address_));
@@ -238,7 +238,7 @@ Result<> EthernetBus::set_lists(std::span<const RegisterRange> reads, int max_wr
                         address_, lbp16::MAX_PACKET_BYTES),
             {}, "use fewer modules: num_stepgens=, num_encoders= and the like in config=");
     }
-    // Each register alone is the longest form of a write.
+    // A write has its maximum length if each register needs its own command.
     constexpr int PER_PACKET = (lbp16::MAX_PACKET_BYTES - HostNumbers::WRITE_BYTES) / 8;
     constexpr int MOST = PER_PACKET * static_cast<int>(HostNumbers::MAX_WRITE_PACKETS);
     if (max_writes > MOST) {

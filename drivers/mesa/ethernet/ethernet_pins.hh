@@ -8,7 +8,7 @@
 
 namespace mw::mesa {
 
-/// Takes settings from parameters before a read and shows the result after it. In HAL memory.
+/// Reads settings from parameters before a read and shows the result after it. In HAL memory.
 class EthernetPins {
   public:
     /// [while loading]
@@ -32,8 +32,8 @@ class EthernetPins {
         rtapi_snprintf(name_.text, sizeof name_.text, "%s", d.prefix());
     }
 
-    /// Before the request of a cycle. Setting io_error, by an operator or HAL, stops the traffic; clearing it
-    /// lets the board be compared and served again. [servo thread]
+    /// Called before the request of a cycle. When io_error is set, by an operator or by HAL, the traffic
+    /// stops; when it is reset, the board is compared and served again. [servo thread]
     void before(EthernetBus &bus) noexcept {
         bus.settings = {.read_timeout = packet_read_timeout_,
                         .error_limit = packet_error_limit_,
@@ -46,7 +46,7 @@ class EthernetPins {
         }
     }
 
-    /// After the read of a cycle. [servo thread]
+    /// Called after the read of a cycle. [servo thread]
     void after(const EthernetBus &bus, long period_ns) noexcept {
         const bool failed = bus.isFailed() || bus.isStopped();
         if (failed && !packet_error_) {
@@ -73,7 +73,7 @@ class EthernetPins {
     }
 
   private:
-    /// One message for a burst of failures.
+    /// Writes one message for a burst of failures.
     void tell(const EthernetBus &bus, long period_ns) const noexcept {
         if (bus.last_cycle() == nullptr) {
             return;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The numbers by which host and board agree on packets: space 4 of the board has eight words that its host
-// may use.
+// The numbers by which host and board identify packets: space 4 of the board has eight words for its host.
 #pragma once
 
 #include <array>
@@ -14,18 +13,19 @@ namespace mw::mesa {
 
 /// Words 0 and 1: the number of the last request. Words 2 and 3, 4, 5: the number of the last write in its
 /// first, second, third packet. Words 6 and 7: a mark that a board loses when it restarts. A request stores
-/// it, after its reads, only when the last answer has shown that it is missing. So no packet hides a restart.
+/// the mark, after its reads, only if the last answer has shown that it is missing. So no packet hides a
+/// restart.
 class HostNumbers {
   public:
     static constexpr std::uint16_t ADDRESS = 0x10;
-    /// Packets into which one write may be divided.
+    /// Maximum number of packets of one write.
     static constexpr std::size_t MAX_WRITE_PACKETS = 3;
     /// Bytes that append_to_request() adds to an answer.
     static constexpr std::size_t ANSWER_BYTES = 16;
     /// Bytes that append_to_write() adds to a packet.
     static constexpr std::size_t WRITE_BYTES = 8;
 
-    /// Makes a request store its number and return all numbers. It has the last commands of the request.
+    /// Makes a request store its number and return all numbers. These are the last commands of the request.
     static bool append_to_request(lbp16::PacketWriter &packet) noexcept {
         return append(packet, 0, lbp16::bytes_of_number(std::uint32_t{0})) &&
                packet.read({.space = lbp16::Space::TIMERS,
@@ -34,7 +34,7 @@ class HostNumbers {
                             .address = ADDRESS}) &&
                append(packet, MARK_OFFSET, lbp16::bytes_of_number(MARK));
     }
-    /// Gives the request the next number: the bytes to send.
+    /// Sets the next number in the request; returns the bytes to send.
     std::span<const std::byte> number(lbp16::PacketWriter &request) noexcept {
         ++request_;
         constexpr std::size_t NUMBER_AND_READ = 4 + 4, MARK_COMMAND = 8;
@@ -49,7 +49,7 @@ class HostNumbers {
                          : append(packet, offset_of(slot), lbp16::bytes_of_number(low_half(writes_[slot])));
     }
 
-    /// The last ANSWER_BYTES of an answer belong to the last request.
+    /// True if the last ANSWER_BYTES of an answer belong to the last request.
     bool isOfLastRequest(std::span<const std::byte> numbers) const noexcept {
         return lbp16::number_at<std::uint32_t>(numbers) == request_;
     }
@@ -61,7 +61,7 @@ class HostNumbers {
         mark_due_ = !marked;
         return restarted;
     }
-    /// The board has all packets of the writes.
+    /// True if the board has received all packets of the writes.
     bool hasAllWrites(std::span<const std::byte> numbers) const noexcept {
         bool all = lbp16::number_at<std::uint32_t>(numbers.subspan(offset_of(0))) == writes_[0];
         for (std::size_t slot = 1; slot < MAX_WRITE_PACKETS; ++slot) {
@@ -70,7 +70,7 @@ class HostNumbers {
         }
         return all;
     }
-    /// Expects the numbers of the board, for example after it was switched on again.
+    /// Expects the numbers of the board from now on, for example after it was switched on again.
     void accept(std::span<const std::byte> numbers) noexcept {
         writes_[0] = lbp16::number_at<std::uint32_t>(numbers.subspan(offset_of(0)));
         for (std::size_t slot = 1; slot < MAX_WRITE_PACKETS; ++slot) {
@@ -102,8 +102,8 @@ class HostNumbers {
 
     std::uint32_t request_ = 0;
     std::array<std::uint32_t, MAX_WRITE_PACKETS> writes_{};
-    bool marked_ = false;    ///< the last answer had the mark
-    bool mark_due_ = false;  ///< the answer to the last request had no mark
+    bool marked_ = false;    ///< the last answer contained the mark
+    bool mark_due_ = false;  ///< the answer to the last request did not contain the mark
 };
 
 }  // namespace mw::mesa

@@ -102,7 +102,7 @@ arpreq arp_request(const std::string &interface, const sockaddr_in &board) {
     return request;
 }
 
-/// Runs nft with the text as its standard input; returns its status, or -1 when it cannot be run.
+/// Runs nft with the text as its standard input. Returns its status, or -1 if it cannot be run.
 int run_nft(const std::string &text) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -119,7 +119,7 @@ int run_nft(const std::string &text) {
     const int started = ::posix_spawnp(&child, name, &actions, nullptr, words, environ);
     ::posix_spawn_file_actions_destroy(&actions);
     ::close(ends[0]);
-    // The text is smaller than a pipe: the write does not wait.
+    // The text fits into a pipe, so the write does not wait.
     const bool written =
         started == 0 && ::write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
     ::close(ends[1]);
@@ -195,7 +195,7 @@ std::string firewall_rules(const BoardRoute &route, const std::vector<BoardAddre
                                 "    oifname \"{0}\" ip daddr {1} icmp type echo-request accept\n",
                                 route.interface, board.ip, board.port);
     }
-    // Declared, deleted and declared: a table that a killed process has left is replaced.
+    // Declared, deleted and declared again, so that a table left by a killed process is replaced.
     return fmt::format("table ip {0}\n"
                        "delete table ip {0}\n"
                        "table ip {0} {{\n"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The network settings of the computer for a board: a fixed entry in the ARP table, so that no request waits
-// for one, and a rule that keeps other packets off the interface. Both need CAP_NET_ADMIN; without it the
-// board works, and a warning names the missing setting. Both end with the driver.
+// for one, and a rule that keeps other packets off the interface. Both need CAP_NET_ADMIN. Without it the
+// board works, and a warning names the missing setting. The driver removes both when it ends.
 #pragma once
 
 #include <array>
@@ -20,11 +20,11 @@ struct BoardAddress {
     std::uint16_t port = lbp16::BOARD_PORT;
 };
 
-/// The interface that reaches a board.
+/// The interface to a board.
 struct BoardRoute {
     std::string interface;           ///< such as eth1
-    std::string own_address;         ///< of this computer there
-    bool has_default_route = false;  ///< other traffic uses it, too
+    std::string own_address;         ///< address of this computer on the interface
+    bool has_default_route = false;  ///< the interface is also used for other traffic
     bool loopback = false;
 };
 
@@ -47,18 +47,18 @@ class FixedArpEntry {
     FixedArpEntry(std::string interface, std::string board_address)
         : interface_(std::move(interface)), board_address_(std::move(board_address)) {}
 
-    std::string interface_, board_address_;  ///< no interface: nothing to remove
+    std::string interface_, board_address_;  ///< no interface: nothing is removed
 };
 
-/// The rules for nft that let packets to the boards pass and keep all others off the interface.
+/// The nft rules that pass packets to the boards and block all others on the interface.
 std::string firewall_rules(const BoardRoute &route, const std::vector<BoardAddress> &boards);
 
-/// The table of nft for one interface, with all boards that it reaches; the destructor removes it. After
-/// SIGKILL it stays until the next start.
+/// The nft table for one interface, with all its boards. The destructor removes it; after SIGKILL it remains
+/// until the next start.
 class BoardFirewall {
   public:
-    /// An error when nft is missing, when this process may not, or when the interface has the default route:
-    /// then other traffic of the computer needs it. [while loading]
+    /// An error if nft is missing, if this process has no permission, or if the interface has the default
+    /// route, because other traffic of the computer needs it then. [while loading]
     static Result<BoardFirewall> create(const BoardRoute &route, const std::vector<BoardAddress> &boards);
     BoardFirewall(BoardFirewall &&other) noexcept;
     BoardFirewall &operator=(BoardFirewall &&) = delete;

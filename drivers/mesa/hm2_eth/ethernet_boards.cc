@@ -23,7 +23,7 @@ namespace mw::mesa {
 
 namespace {
 
-/// A bus whose settings and results are pins.
+/// A bus with pins for its settings and results.
 class PinnedBus final : public ForwardingBus {
   public:
     PinnedBus(std::unique_ptr<EthernetBus> bus, EthernetPins &pins)
@@ -48,7 +48,7 @@ class PinnedBus final : public ForwardingBus {
 struct EthernetBoard {
     std::string name;
     BoardAddress address;
-    std::optional<BoardRoute> route;  ///< empty: not found, with a warning
+    std::optional<BoardRoute> route;  ///< empty: not found, reported by a warning
     std::optional<CycleRecordFile> cycles;
     std::unique_ptr<PinnedBus> bus;
     std::optional<FixedArpEntry> arp;
@@ -83,7 +83,7 @@ Result<BoardAddress> address_of(std::string_view text) {
     return address;
 }
 
-/// A failure that the board does not depend on is a warning.
+/// Reports a failure as a warning if the board works without it.
 template <class T>
 std::optional<T> optional_of(Result<T> result, const std::string &name) {
     if (!result) {
@@ -103,7 +103,7 @@ void find_board(EthernetBoard &board, const MacAddress &mac) {
     }
 }
 
-/// One firewall for each interface, because it passes only packets of known boards.
+/// Creates one firewall for each interface, because it passes only packets of known boards.
 void close_interfaces() {
     std::map<std::string, std::vector<const EthernetBoard *>> interfaces;
     for (const EthernetBoard &board : boards()) {
@@ -131,7 +131,7 @@ const char *value_at(std::span<char *const> values, std::size_t i) {
     return i < values.size() && values[i] != nullptr ? values[i] : "";
 }
 
-/// The connection to board number `i`.
+/// Opens the connection to board number `i`.
 Result<std::unique_ptr<lbp16::Transport>> open_transport(const EthernetLoad &load, std::size_t i,
                                                          const BoardAddress &address) {
     if (!isVirtual()) {

@@ -10,24 +10,24 @@
 
 namespace mw::mesa {
 
-/// Boards of one load.
+/// Maximum number of boards of one load.
 constexpr int MAX_ETHERNET_BOARDS = 4;
 
 /// The module parameters of hm2_eth.
 struct EthernetLoad {
     int comp_id = 0;
     std::span<char *const>
-        addresses;  ///< board_ip=: ADDRESS or ADDRESS:PORT; the first empty one ends the list
+        addresses;  ///< board_ip=: ADDRESS or ADDRESS:PORT; the first empty value ends the list
     std::span<char *const> configs;         ///< config=
     std::span<char *const> virtual_boards;  ///< virtual_board=: MODEL[:PHYSICS_FILE] under the virtual clock
     std::string firewall;                   ///< auto, nft or none
 };
 
-/// 0, or a negated errno with a message in the log; unload_ethernet_boards() follows also then. [while
-/// loading]
+/// 0, or a negated errno with a message in the log. unload_ethernet_boards() is also called after a failure.
+/// [while loading]
 MW_HOSTMOT2_API int load_ethernet_boards(const EthernetLoad &load);
-/// Switches the outputs of the boards off and undoes the changes of the network. None of their functions may
-/// run. [while unloading]
+/// Switches the outputs of the boards off and undoes the changes of the network settings. Call it when none
+/// of their functions can run. [while unloading]
 MW_HOSTMOT2_API void unload_ethernet_boards(int comp_id);
 
 }  // namespace mw::mesa

@@ -4,10 +4,10 @@
 //     loadrt hostmot2
 //     loadrt hm2_eth board_ip=192.168.1.121 config="num_encoders=1 num_stepgens=3"
 //
-// Strings of several boards are separated by commas. firewall=auto or nft keeps other packets off the
-// interface of a board, none leaves it open. Under the virtual clock boards are simulated:
-// virtual_board=MODEL or MODEL:PHYSICS_FILE names them, or for files that are not to be changed the
-// environment variable MILLWRIGHT_MESA=ADDRESS=MODEL[:PHYSICS_FILE],...
+// Strings of several boards are separated by commas. firewall=auto or nft blocks other packets on the
+// interface of a board, none does not. Under the virtual clock boards are simulated: virtual_board=MODEL or
+// MODEL:PHYSICS_FILE selects them; for files that must not be changed the environment variable
+// MILLWRIGHT_MESA=ADDRESS=MODEL[:PHYSICS_FILE],...
 #include <cerrno>
 #include <cstring>
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint8_t ANY = 0xFF;  // ends the list of versions
 
-/// A module type that the driver knows: the versions that it can use (none: it is ignored without a warning).
+/// A module type known to the driver, with the versions that it can use (none: ignored without a warning).
 struct Known {
     Gtag gtag;
     std::string_view name;
@@ -67,7 +67,7 @@ bool isIgnored(const ModuleDescriptor &module) noexcept {
     return known != nullptr && known->versions[0] == ANY;
 }
 
-/// Pins of a multiplexer belong to the encoders that it serves.
+/// True for a pin of a multiplexer of used encoders.
 bool isSelectOfUsedEncoder(const PinDescriptor &pin, const Assignment &assignment) noexcept {
     return pin.secondary == Gtag::MUX_SELECT &&
            std::ranges::any_of(assignment.modules, [](const UsedModule &m) {
@@ -77,13 +77,14 @@ bool isSelectOfUsedEncoder(const PinDescriptor &pin, const Assignment &assignmen
 
 constexpr std::uint8_t ALL_UNITS = 0x80;
 
-/// A stepgen has its step and direction pins, and as many table pins as stepgen_width= allows.
+/// True if the pin belongs to the outputs of a stepgen: step, direction, and as many table pins as
+/// stepgen_width= allows.
 bool isWithinWidth(const PinDescriptor &pin, const Config &config) noexcept {
     const bool is_table_pin = pin.secondary == Gtag::STEPGEN && (pin.secondary_pin & 0x80U) != 0;
     return !is_table_pin || static_cast<int>(pin.secondary_pin & 0x7FU) <= config.stepgen_width;
 }
 
-/// Watchdog and phase-locked loop exist once; lamps are counted by the card.
+/// Number of instances. Watchdog and phase-locked loop exist once; lamps are counted by the card.
 int instances_of(const ModuleDescriptor &module, int leds) noexcept {
     if (module.gtag == Gtag::LED) {
         return leds;
@@ -131,7 +132,7 @@ Result<int> used_instances(const ModuleDescriptor &module, const Config &config,
     return wanted == ALL_INSTANCES ? available : wanted;
 }
 
-/// A limit of modules that the firmware does not have at all.
+/// Reports a limit for a module that the firmware does not have.
 Result<> check_missing(const Idrom &idrom, const Config &config) {
     for (const auto &[gtag, wanted] : config.wanted) {
         const std::string_view token = token_of(gtag);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which modules and instances of a firmware are used, and which module has each pin.
+// The modules and instances of a firmware that are used, and the module of each pin.
 #pragma once
 
 #include <span>
@@ -13,11 +13,11 @@
 
 namespace mw::mesa {
 
-/// A module of the firmware and the number of its instances that are used (the first ones).
+/// A module of the firmware and the number of its used instances (the first ones).
 struct UsedModule {
     ModuleDescriptor descriptor;
     int instances = 0;
-    std::uint32_t clock_hz = 0;  ///< that it counts
+    std::uint32_t clock_hz = 0;  ///< frequency of the clock that it counts
     std::uint16_t register_stride = 0, instance_stride = 0;
 
     /// The address of a register of an instance.
@@ -32,7 +32,7 @@ struct UsedPin {
     int number = 0;
     Gtag module = Gtag::NONE;
     int instance = 0;
-    std::uint8_t function = 0;  ///< of the module, bit 7: output
+    std::uint8_t function = 0;  ///< function of the module, bit 7: output
 
     bool isOutputOfModule() const noexcept { return module != Gtag::NONE && (function & 0x80U) != 0; }
     bool isGeneral() const noexcept { return module == Gtag::NONE; }
@@ -45,13 +45,13 @@ struct Assignment {
     std::vector<std::string> warnings;    ///< omitted modules, with gtag, version and base address
 };
 
-/// Whether the driver can use a module of this type and version.
+/// True if the driver can use a module of this type and version.
 bool isSupported(const ModuleDescriptor &module) noexcept;
 /// The usual name of a module type, such as "StepGen"; "unknown" for others.
 std::string_view module_name(Gtag gtag) noexcept;
 
-/// Applies a configuration to a firmware. An error says how many instances of a module there are when the
-/// configuration wants more. `leds`: lamps of the card, which the firmware does not count.
+/// Applies a configuration to a firmware. If the configuration requests more instances than there are, the
+/// error contains their number. `leds`: lamps of the card, which the firmware does not count.
 Result<Assignment> assign(const Idrom &idrom, const Config &config, int leds);
 
 }  // namespace mw::mesa

@@ -99,11 +99,11 @@ Ports Board::ports() {
     return all;
 }
 
-// Positions are those of the machine only as long as the driver follows the counters of the board in every
-// cycle.
+// Finds out whether positions are lost. They are valid only while the driver follows the counters of the
+// board in every cycle.
 PositionLoss Board::find_loss(CycleRead result, bool bitten, bool restarted) noexcept {
     if (result == CycleRead::FAILED) {
-        return PositionLoss::NONE;  // too few failures for a fault: the next answer continues
+        return PositionLoss::NONE;  // too few failures for a fault, so the next answer continues
     }
     const bool followed = std::exchange(followed_, result == CycleRead::DONE);
     const bool stopped = std::exchange(was_stopped_, was_stopped_ || result == CycleRead::STOPPED);
@@ -132,7 +132,7 @@ void Board::read(long period_ns, std::int64_t now_ns) noexcept {
     restarted_ = bus_.take_restart() || restarted_;
     fresh_ = result == CycleRead::DONE;
     stopped_ = result == CycleRead::STOPPED;
-    // After a stop the watchdog may have bitten: nothing is written before its status has been read again.
+    // The watchdog may have bitten after a stop, so nothing is written before its status has been read again.
     is_read_once_ = fresh_ || (is_read_once_ && !stopped_);
     rewrite_due_ = bus_.take_rewrite() || rewrite_due_;
     write_doubtful_ = write_doubtful_ || rewrite_due_ || !fresh_;
@@ -188,7 +188,8 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
     fresh_ = false;  // a cycle without read() has no new inputs
     if (!cycle.writing) {
         output_on_.store(false,
-                         std::memory_order_relaxed);  // the fast thread needs no other data of this one
+                         // relaxed, because the fast thread needs no other data of this thread
+                         std::memory_order_relaxed);
         rewrite_due_ = true;
         return;
     }
@@ -202,9 +203,9 @@ void Board::write(long period_ns, std::int64_t now_ns) noexcept {
     }
 }
 
-// The configuration turns the outputs on again that a bite has turned off. So all registers are written only
-// when the read of this cycle has shown that the watchdog has not bitten, and when that was not long ago: the
-// process may have been suspended between read and write.
+// Writing the configuration would turn on outputs that a bite has turned off. So all registers are written
+// only if a recent read in this cycle has shown that the watchdog has not bitten; the process may have been
+// suspended between read and write.
 bool Board::isReadRecent(std::int64_t now_ns) const noexcept {
     return watchdog_ == nullptr || now_ns - read_ns_ < std::int64_t{watchdog_->timeout_ns()} / 2;
 }
@@ -221,7 +222,7 @@ void Board::note_timeout(long period_ns) noexcept {
         return;
     }
     checked_timeout_ns_ = timeout_ns;
-    // A cycle that is half a period late must not be a bite.
+    // A cycle that is half a period late must not cause a bite.
     events_.timeout_short = timeout_ns < period_ns + period_ns / 2;
 }
 
@@ -273,7 +274,7 @@ void Board::stop() noexcept {
     if (watchdog_ == nullptr || !written_) {
         return;  // the outputs are off, or another host drives the board
     }
-    // The shortest time of the watchdog passes before the next register could be written.
+    // The minimum time of the watchdog passes before the next register could be written.
     const std::uint32_t shortest = 0;
     (void)bus_.write_now(watchdog_->timer_address(), std::span(&shortest, 1));
 }

@@ -16,7 +16,7 @@ namespace {
 
 struct CountToken {
     std::string_view token;
-    Gtag gtags[2];  ///< modules that it limits; two of one module are written alike
+    Gtag gtags[2];  ///< modules that it limits; two entries if two modules have the same token
 };
 
 constexpr CountToken COUNT_TOKENS[] = {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A bus in front of another one, such as one whose settings are pins. A class that derives from it overrides
-// what it adds; everything else goes to the bus behind it, also functions that are added to RegisterBus
-// later.
+// A bus that passes calls on to another bus. A derived class overrides the functions that it changes; all
+// others are passed on.
 #pragma once
 
 #include "drivers/mesa/hostmot2/register_bus.hh"
@@ -10,7 +9,7 @@ namespace mw::mesa {
 
 class ForwardingBus : public RegisterBus {
   public:
-    /// `inner` outlives it.
+    /// `inner` must outlive this object.
     explicit ForwardingBus(RegisterBus &inner) : inner_(inner) {}
 
     std::string card_name() const override { return inner_.card_name(); }

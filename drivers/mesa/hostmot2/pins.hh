@@ -80,14 +80,14 @@ class PinBinding {
     /// Creates one pin for one field. [while loading]
     void add(PinSpace &space, const std::string &name, PinType type, Access access, void *field);
 
-    /// The same pins with other fields: a field `n` bytes behind `from` becomes the one `n` bytes behind
-    /// `to`. So a second thread has separate values. [while loading]
+    /// Returns the same pins with other fields: a field `n` bytes after `from` becomes the field `n` bytes
+    /// after `to`. So a second thread has separate values. [while loading]
     PinBinding moved(const void *from, void *to) const;
 
     /// Copies the values that others may set (IN, IO, RW) to the fields. [servo thread]
     void load() noexcept;
     /// Copies the fields of OUT and RO to HAL, and those of IO and RW that changed since load(), so that a
-    /// value that a user set meanwhile is not overwritten. [servo thread]
+    /// value set by a user in this time is not overwritten. [servo thread]
     void store() noexcept;
 
   private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Serial interfaces of a board that have no pins: other components use them through hostmot2-serial.h.
+// Serial interfaces of a board without pins, for other components through hostmot2-serial.h.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ class Uart;
 class PacketUart;
 class BufferedSpi;
 
-/// An interface and its name without that of the board, such as "uart.0".
+/// An interface and its name without the name of the board, such as "uart.0".
 template <class Port>
 struct NamedPort {
     std::string name;

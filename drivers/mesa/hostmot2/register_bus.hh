@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How the driver reaches the registers of a board. Each bus (Ethernet, PCI, SPI, EPP, a board in memory) is
-// one implementation. While a component is loaded, registers are read and written one by one; the servo
-// thread reads one list that was fixed before, and writes one list.
+// The interface of the driver to the registers of a board. Each bus (Ethernet, PCI, SPI, EPP, a board in
+// memory) is an implementation. While a component is loaded, registers are read and written one by one; the
+// servo thread reads one list that was fixed before, and writes one list.
 #pragma once
 
 #include <chrono>
@@ -33,7 +33,7 @@ struct RegisterWrite {
 
 /// Result of the read of a cycle.
 enum class CycleRead : std::uint8_t {
-    DONE,     ///< all values are of this cycle
+    DONE,     ///< all values are from this cycle
     FAILED,   ///< no value is new; the bus has counted the failure
     STOPPED,  ///< too many failures: there is no traffic until an operator resets the fault
 };
@@ -57,26 +57,26 @@ class RegisterBus {
     /// Waits while a processor of the board works. [while loading]
     virtual void pause_now(std::chrono::nanoseconds duration) { std::this_thread::sleep_for(duration); }
     /// Fixes the registers that each cycle reads, and the maximum number of registers that one cycle writes.
-    /// An error when they do not fit into one cycle of the bus. [while loading]
+    /// An error if they do not fit into one cycle of the bus. [while loading]
     virtual Result<> set_lists(std::span<const RegisterRange> reads, int max_writes) = 0;
 
     /// Sends the request of this cycle, so that its answer arrives while other boards are read. Optional
     /// before read(). [servo thread]
     virtual void request() noexcept = 0;
-    /// The values of all ranges of set_lists(), in their order. `period_ns` of the thread bounds the wait.
-    /// [servo thread; does not block longer than the deadline]
+    /// Reads the values of all ranges of set_lists(), in their order. `period_ns` of the thread limits the
+    /// wait. [servo thread; does not block longer than the deadline]
     virtual CycleRead read(std::span<std::uint32_t> values, long period_ns) noexcept = 0;
-    /// Reads another address as range number `range` from the next request on, for raw access by a user;
-    /// false: this bus cannot. [servo thread]
+    /// From the next request on reads another address as range number `range`, for raw access by a user;
+    /// false if this bus cannot. [servo thread]
     virtual bool redirect(int range, std::uint16_t address) noexcept {
         (void)range;
         (void)address;
         return false;
     }
-    /// Writes a list in its order; false when it could not be sent. [servo thread]
+    /// Writes a list in its order; false if it could not be sent. [servo thread]
     virtual bool write(std::span<const RegisterWrite> writes) noexcept = 0;
-    /// Whether registers can be read and written at any moment, also by a faster thread than that of the
-    /// cycle, such as on PCI. Then both functions below work besides the cycle. [while loading]
+    /// True if registers can be read and written at any time, also by a faster thread than that of the cycle,
+    /// as on PCI. Both functions below may then be used in addition to the cycle. [while loading]
     virtual bool hasImmediateAccess() const noexcept { return false; }
     /// Reads `values.size()` registers from `address`; false: it failed. [any realtime thread]
     virtual bool read_immediately(std::uint16_t address, std::span<std::uint32_t> values) noexcept {
@@ -89,16 +89,17 @@ class RegisterBus {
         (void)writes;
         return false;
     }
-    /// True once after a failure: the board may have missed writes, so that the next write() must hold all
+    /// True once after a failure: the board may have missed writes, so the next write() must contain all
     /// registers. [servo thread]
     virtual bool take_rewrite() noexcept = 0;
-    /// Whether take_restart() shows each restart of the board. On other buses a restart looks like a bite of
-    /// the watchdog. [servo thread]
+    /// True if take_restart() detects each restart of the board. On other buses a restart has the same effect
+    /// as a bite of the watchdog. [servo thread]
     virtual bool isRestartVisible() const noexcept { return false; }
     /// True once after the board has lost its registers, because it was without power or was reset. [servo
     /// thread]
     virtual bool take_restart() noexcept { return false; }
-    /// The watchdog of the board has bitten: a bus that records its cycles stores them. [servo thread]
+    /// Called when the watchdog of the board has bitten: a bus that records its cycles stores them. [servo
+    /// thread]
     virtual void note_watchdog_bite() noexcept {}
 };
 

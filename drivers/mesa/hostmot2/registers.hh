@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The registers that a cycle reads and writes. While loading, modules request their registers; then the lists
-// are fixed. A cycle reads one list and writes one list: all registers after a failure, otherwise those that
-// are written in each cycle and those whose value changed.
+// are fixed. A cycle reads one list and writes one list: all registers after a failure, otherwise the
+// registers that are written in each cycle and those whose value has changed.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace mw::mesa {
 
-/// The order in which registers are read. The read of DPLL_SYNC is the moment that the board synchronises to;
-/// the count of time stamps is read before the counters, so that no time stamp is in the future.
+/// The order in which registers are read. The board synchronises to the read of DPLL_SYNC. The count of time
+/// stamps is read before the counters, so that no time stamp is in the future.
 enum class ReadOrder : std::uint8_t {
     PORT,
     DPLL_SYNC,
@@ -48,7 +48,7 @@ enum class Send : std::uint8_t {
     ALWAYS,       ///< in each cycle
     CHANGED,      ///< when its value changed, and after a failure
     AFTER_FAULT,  ///< when all registers are written
-    REQUESTED,    ///< after request() only
+    REQUESTED,    ///< only after request()
     REPEATED,     ///< after request(), and from then on when all registers are written
 };
 
@@ -68,13 +68,13 @@ class Registers {
     /// Fixes the lists. An error of the bus explains why it cannot carry them. [while loading]
     Result<> fix(RegisterBus &bus);
 
-    /// The words that a read fills. [servo thread]
+    /// The words filled by a read. [servo thread]
     std::span<std::uint32_t> inputs() noexcept { return inputs_; }
     /// The word `i` of a range. [servo thread]
     std::uint32_t value(ReadHandle handle, int i = 0) const noexcept {
         return inputs_[static_cast<std::size_t>(reads_[static_cast<std::size_t>(handle.index)].first + i)];
     }
-    /// Sets the value to write. [servo thread]
+    /// Sets the value to be written. [servo thread]
     void set(WriteHandle handle, std::uint32_t value) noexcept {
         writes_[static_cast<std::size_t>(handle.index)].value = value;
     }
@@ -85,7 +85,7 @@ class Registers {
         write.requested = true;
         write.ever_requested = true;
     }
-    /// A register with Send::REPEATED is not written any more until the next request(). [servo thread]
+    /// A register with Send::REPEATED is not written again until the next request(). [servo thread]
     void forget(WriteHandle handle) noexcept {
         writes_[static_cast<std::size_t>(handle.index)].ever_requested = false;
     }
@@ -93,12 +93,12 @@ class Registers {
     void set_address(WriteHandle handle, std::uint16_t address) noexcept {
         writes_[static_cast<std::size_t>(handle.index)].address = address;
     }
-    /// Reads another address; false: the bus cannot. [servo thread]
+    /// Reads another address; false if the bus cannot. [servo thread]
     bool redirect(ReadHandle handle, std::uint16_t address) noexcept;
-    /// The list of this cycle; valid until the next call. Each value in it counts as written. [servo thread]
+    /// The list for this cycle, valid until the next call. Its values count as written. [servo thread]
     std::span<const RegisterWrite> list(bool all) noexcept;
-    /// Register number `i` and the value that was written last; nothing: there are fewer. A register that was
-    /// never written has the value 0. [any time between cycles]
+    /// Register number `i` and its last written value; nothing if there are fewer registers. A register that
+    /// was never written has the value 0. [any time between cycles]
     std::optional<RegisterWrite> written(int i) const noexcept {
         const auto n = static_cast<std::size_t>(i);
         return n < sequence_.size() ? std::optional<RegisterWrite>(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The cards by their names: name in HAL, ports, connectors. Source: shared/hardware.md, part A3.
+// The cards by name: name in HAL, ports, connectors. Source: shared/hardware.md, part A3.
 #pragma once
 
 #include <array>
@@ -18,12 +18,12 @@ struct Card {
     std::uint8_t ports = 0;
     std::uint8_t port_width = 0;
     std::array<std::string_view, MAX_PORTS>
-        connectors{};  ///< one for each port, as on the board; empty: the pins have own names
+        connectors{};  ///< one for each port, as on the board; empty: the pins have their own names
 };
 
-/// All known cards with Ethernet, longer names before those that they begin with.
+/// All known cards with Ethernet; longer names come before their prefixes.
 std::span<const Card> ethernet_cards() noexcept;
-/// The card with the reported name (16 characters, spaces or zeros at the end); nullptr: unknown.
+/// The card with the reported name (16 characters, padded with spaces or zeros); nullptr: unknown.
 const Card *find_ethernet_card(std::string_view reported_name) noexcept;
 
 }  // namespace mw::mesa

@@ -16,9 +16,9 @@ namespace {
 
 constexpr int HEADER_WORDS = 16, MODULE_WORDS = 3, NAME_SIZE = 8;
 constexpr int MODULE_BYTES = 4 * MODULE_WORDS, PIN_BYTES = 4;
-/// The registers are 64 KiB.
+/// The registers occupy 64 KiB.
 constexpr std::uint32_t SPACE_BYTES = 0x10000;
-/// The most registers of one call of the reader: every bus can read as many at once.
+/// The maximum number of registers of one call of the reader, which every bus can read at once.
 constexpr int MOST_AT_ONCE = 32;
 constexpr std::string_view CONFIG_NAME = "HOSTMOT2";
 constexpr std::uint32_t LOWEST_CLOCK_HZ = 1'000'000;
@@ -245,7 +245,7 @@ Result<std::vector<PinDescriptor>> read_pins(const RegisterReader &read, std::ui
     return pins;
 }
 
-/// Each pin needs an IO port, whose registers give its direction and source.
+/// Checks that each pin has an IO port, whose registers set its direction and source.
 Result<> check_io_ports(const Idrom &idrom) {
     std::size_t covered = 0;
     for (const ModuleDescriptor &module : idrom.modules) {
@@ -253,7 +253,7 @@ Result<> check_io_ports(const Idrom &idrom) {
             covered += std::size_t{module.instances} * idrom.header.port_width;
         }
     }
-    // No IO port has these pins. LinuxCNC's driver reports two errors for each of them.
+    // These pins have no IO port. LinuxCNC's driver reports two errors for each of them.
     std::string lines;
     for (std::size_t pin = covered; pin < idrom.pins.size(); ++pin) {
         lines += fmt::format("{0}hm2_set_pin_source: invalid pin number {1}\n"
@@ -281,7 +281,7 @@ Result<Idrom> decode_idrom(const RegisterReader &read, const CardShape &card) {
     if (auto header = check_header(idrom.header, card); !header.has_value()) {
         return std::unexpected(header.error());
     }
-    // LinuxCNC's driver reads the pins first: of two errors, the same one is reported.
+    // LinuxCNC's driver reads the pins first, so of two errors the same one is reported.
     auto pins = read_pins(read, std::uint64_t{*base} + idrom.header.pins_offset,
                           static_cast<int>(idrom.header.io_width));
     if (!pins.has_value()) {
@@ -301,7 +301,7 @@ Result<Idrom> decode_idrom(const RegisterReader &read, const CardShape &card) {
 
 namespace {
 
-/// Appends `words` from `address` on.
+/// Appends `words`, beginning with `address`.
 void put(std::vector<RegisterValue> &registers, std::uint64_t address, std::span<const std::uint32_t> words) {
     for (const std::uint32_t word : words) {
         registers.push_back({static_cast<std::uint16_t>(address), word});
@@ -341,7 +341,7 @@ std::uint32_t word_of(const PinDescriptor &pin) {
                    static_cast<unsigned>(pin.primary));
 }
 
-/// The parts of the description lie in this order and do not overlap.
+/// Checks that the parts of the description are in this order and do not overlap.
 Result<> check_layout(const Idrom &idrom, std::uint64_t offset) {
     const std::uint64_t modules = offset + idrom.header.modules_offset;
     const std::uint64_t pins = offset + idrom.header.pins_offset;

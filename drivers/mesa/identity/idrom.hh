@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How a HostMot2 firmware describes itself: the IDROM with its modules and pins. The driver and the simulated
-// board share this description and nothing else. Source: shared/hardware.md, part B1.
+// The self-description of a HostMot2 firmware: the IDROM with its modules and pins. The driver and the
+// simulated board share this description and nothing else. Source: shared/hardware.md, part B1.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ constexpr std::uint32_t COOKIE = 0x55AACAFE;
 constexpr std::uint16_t CONFIG_NAME_ADDRESS = 0x0104;  ///< "HOSTMOT2", 8 characters
 constexpr std::uint16_t IDROM_OFFSET_ADDRESS = 0x010C;
 
-/// The most that a firmware lists: descriptors of modules (the last has gtag 0), and pins.
+/// The maximum of a firmware: descriptors of modules (the last has gtag 0), and pins.
 constexpr int MAX_MODULES = 48, MAX_PINS = 144;
 
 /// The numbers of module types.
@@ -81,16 +81,16 @@ struct ModuleDescriptor {
     std::uint8_t instances = 0;
     std::uint16_t base_address = 0;
     std::uint8_t registers = 0;
-    std::uint8_t register_stride = 0, instance_stride = 0;  ///< which of the strides of the header
-    std::uint32_t per_instance = 0;  ///< bit r: register r exists once in each instance
+    std::uint8_t register_stride = 0, instance_stride = 0;  ///< selects the strides in the header
+    std::uint32_t per_instance = 0;                         ///< bit r: register r exists in each instance
 
     bool operator==(const ModuleDescriptor &) const = default;
 };
 
 /// A pin and the module that can use it instead of the IO port.
 struct PinDescriptor {
-    std::uint8_t secondary_pin = 0;  ///< of the module; bit 7: output
-    Gtag secondary = Gtag::NONE;     ///< NONE: the pin is an input or output only
+    std::uint8_t secondary_pin = 0;  ///< pin of the module; bit 7: output
+    Gtag secondary = Gtag::NONE;     ///< NONE: the pin is only an input or output
     std::uint8_t unit = 0;           ///< instance of the module; 0x80: of all
     Gtag primary = Gtag::IO_PORT;
 
@@ -106,7 +106,7 @@ struct Idrom {
     bool operator==(const Idrom &) const = default;
 };
 
-/// Reads `count` registers of 32 bits from `address` on; an error is passed on as it is.
+/// Reads `count` registers of 32 bits from `address`; an error is passed on unchanged.
 using RegisterReader = std::function<Result<std::vector<std::uint32_t>>(std::uint16_t address, int count)>;
 
 /// The connectors of a card, as known to its bus; 0: not known, not compared.
@@ -115,9 +115,9 @@ struct CardShape {
 };
 
 /// Reads the description of a firmware and checks it: cookie, name, type, port width, ports, width, clocks
-/// (at least 1 MHz), number of modules and pins, addresses. The error names the value that is wrong and the
-/// value that is expected, in the words that users of LinuxCNC's driver know. A module whose gtag or version
-/// is not known is no error. [not realtime]
+/// (at least 1 MHz), number of modules and pins, addresses. The error contains the wrong and the expected
+/// value, in the words of LinuxCNC's driver. A module with an unknown gtag or version is not an error. [not
+/// realtime]
 Result<Idrom> decode_idrom(const RegisterReader &read, const CardShape &card = {});
 
 /// A register and its value.

@@ -49,7 +49,7 @@ constexpr ModuleText MODULES[] = {
     {Gtag::PERIOD_METER, "period meter"},
 };
 
-/// Consecutive functions with one text; {} is the number from `first_number` on.
+/// Consecutive functions with one text; {} is the number, beginning with `first_number`.
 struct FunctionText {
     Gtag gtag;
     std::uint8_t first, last;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where the pins of a board are, and what they can do, in the words of the boards' manuals.
-// Source: shared/hardware.md, parts A3 and B1.
+// Position and function of the pins of a board, in the words of the boards' manuals. Source:
+// shared/hardware.md, parts A3 and B1.
 #pragma once
 
 #include <string>

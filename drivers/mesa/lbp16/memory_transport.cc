@@ -61,7 +61,7 @@ void MemoryTransport::set_words(Space space, std::uint16_t address, std::span<co
 
 /// Lets the board execute all packets that have reached it.
 void MemoryTransport::deliver() {
-    // Later packets are executed when the host reads again: an answer cannot arrive before them.
+    // Later packets are executed when the host reads again, because no answer can arrive before them.
     while (!to_board_.empty()) {
         const Packet packet = std::move(to_board_.front());
         to_board_.pop_front();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A board without behaviour, for tests: its spaces are plain memory, time is virtual, and packets are lost,
-// doubled or delayed on demand.
+// duplicated or delayed as set by the test.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace mw::mesa::lbp16 {
 
-/// Treatment of a packet in the network.
+/// Transfer of a packet through the network.
 struct Passage {
     int copies = 1;             ///< 0: the packet is lost
     std::int64_t delay_ns = 0;  ///< added to `MemoryTransport::WAY_NS`
@@ -23,7 +23,7 @@ struct Passage {
 
 class MemoryTransport final : public Transport {
   public:
-    static constexpr std::int64_t WAY_NS = 20'000;  ///< one way
+    static constexpr std::int64_t WAY_NS = 20'000;  ///< time in one direction
     static constexpr std::size_t SPACE_BYTES = 0x10000;
 
     MemoryTransport();
@@ -37,7 +37,7 @@ class MemoryTransport final : public Transport {
     std::uint32_t register_at(std::uint16_t address) const;
     void set_register(std::uint16_t address, std::uint32_t value);
     void set_words(Space space, std::uint16_t address, std::span<const std::uint16_t> words);
-    /// Every register of the space HOSTMOT2 that was written, in order.
+    /// Each written register of the space HOSTMOT2, in order.
     struct Written {
         std::uint16_t address;
         std::uint32_t value;

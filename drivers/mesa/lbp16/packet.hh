@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// LBP16, the protocol of Mesa's Ethernet boards: one UDP packet holds a list of commands, which the board
-// executes in order. The answer holds the data of all reads, joined. All numbers are little-endian.
+// LBP16, the protocol of Mesa's Ethernet boards: one UDP packet contains a list of commands, which the board
+// executes in order. The answer contains the data of all reads without gaps. All numbers are little-endian.
 // Source: shared/hardware.md, part A1.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace mw::mesa::lbp16 {
 constexpr std::uint16_t BOARD_PORT = 27181;
 /// The largest packet that a driver sends or a board answers [bytes]; it fits one Ethernet frame.
 constexpr std::size_t MAX_PACKET_BYTES = 1400;
-/// The largest number of units of one command.
+/// The maximum number of units of one command.
 constexpr int MAX_UNITS = 127;
 
 /// The memory spaces of a board.
@@ -40,10 +40,10 @@ constexpr std::size_t bytes_of(Unit unit) noexcept {
 
 /// One command without its data.
 struct Command {
-    bool writes = false;       ///< false: it reads
-    bool addressed = true;     ///< false: it begins at the stored pointer of the space
-    bool information = false;  ///< of the information area of the space
-    bool incrementing = true;  ///< the address moves on after each unit
+    bool writes = false;       ///< false: the command reads
+    bool addressed = true;     ///< false: begins at the stored pointer of the space
+    bool information = false;  ///< accesses the information area of the space
+    bool incrementing = true;  ///< the address increments after each unit
     Space space = Space::HOSTMOT2;
     Unit unit = Unit::BITS_32;
     std::uint8_t units = 1;     ///< 0 to 127; 0 is an error of the packet
@@ -58,15 +58,15 @@ std::uint16_t command_word(const Command &command) noexcept;
 Command command_of(std::uint16_t word) noexcept;
 
 /// A packet that a host composes. A command that does not fit is omitted and makes the packet permanently
-/// full, so that the packet is always a prefix of the requested list. [any thread; no allocation]
+/// full, so the packet is always a prefix of the requested list. [any thread; no allocation]
 class PacketWriter {
   public:
     /// `limit` [bytes], at most MAX_PACKET_BYTES.
     explicit PacketWriter(std::size_t limit = MAX_PACKET_BYTES) noexcept;
 
-    /// Appends a read; false when it or its answer does not fit any more.
+    /// Appends a read; false if it or its answer does not fit.
     bool read(const Command &command) noexcept;
-    /// Appends a write of data.size() bytes, which are command.data_bytes(); false when it does not fit.
+    /// Appends a write of data.size() bytes, which is command.data_bytes(); false if it does not fit.
     bool write(const Command &command, std::span<const std::byte> data) noexcept;
     /// Appends the write of one register of 32 bits in the space HOSTMOT2.
     bool write_register(std::uint16_t address, std::uint32_t value) noexcept;
@@ -74,11 +74,11 @@ class PacketWriter {
     bool read_registers(std::uint16_t address, int count) noexcept;
 
     std::span<const std::byte> bytes() const noexcept { return std::span(bytes_).first(size_); }
-    /// The size of the answer [bytes]; 0: the board sends none.
+    /// The size of the answer [bytes]; 0: the board sends no answer.
     std::size_t answer_bytes() const noexcept { return answer_bytes_; }
     bool isFull() const noexcept { return full_; }
     void clear() noexcept;
-    /// Replaces bytes from `offset`, such as the data of a write; both lie within bytes().
+    /// Replaces bytes from `offset`, such as the data of a write; they must be within bytes().
     void replace(std::size_t offset, std::span<const std::byte> data) noexcept;
 
   private:
@@ -116,7 +116,7 @@ class PacketReader {
     std::span<const std::byte> rest_;
 };
 
-/// The number of sizeof(T) bytes at the beginning of `bytes`, which has as many.
+/// The number in the first sizeof(T) bytes of `bytes`, which must have at least this size.
 template <class T>
 constexpr T number_at(std::span<const std::byte> bytes) noexcept {
     std::uint64_t value = 0;
@@ -126,7 +126,7 @@ constexpr T number_at(std::span<const std::byte> bytes) noexcept {
     return static_cast<T>(value);
 }
 
-/// The bytes of `value`, the lowest first.
+/// The bytes of `value`, lowest first.
 template <class T>
 constexpr std::array<std::byte, sizeof(T)> bytes_of_number(T value) noexcept {
     std::array<std::byte, sizeof(T)> bytes{};

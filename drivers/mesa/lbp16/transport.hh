@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How packets reach a board: UDP, a board in memory, or a recording.
+// Transfer of packets to the board: UDP, a board in memory, or a recording.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@ namespace mw::mesa::lbp16 {
 
 /// Result of one attempt to send or receive.
 struct TransportResult {
-    std::size_t bytes = 0;     ///< sent, or received; 0 with `error`
+    std::size_t bytes = 0;     ///< bytes sent or received; 0 with `error`
     int error = 0;             ///< errno; EAGAIN: nothing has arrived yet
-    std::int64_t time_ns = 0;  ///< monotonic time at which it was done
+    std::int64_t time_ns = 0;  ///< monotonic time of the operation
 
     bool isDone() const noexcept { return error == 0; }
 };
@@ -23,7 +23,7 @@ class Transport {
     virtual ~Transport() = default;
 
     virtual TransportResult send(std::span<const std::byte> packet) noexcept = 0;
-    /// The next packet that has arrived, cut to the size of `packet`; EAGAIN without one.
+    /// The next packet that has arrived, cut to the size of `packet`; EAGAIN if there is none.
     virtual TransportResult receive(std::span<std::byte> packet) noexcept = 0;
     /// Sleeps until a packet may have arrived, or until `deadline_ns` (monotonic). It may
     /// return early. In virtual time it returns at once.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Mesa cards on PCI by their numbers. Sources: shared/hardware.md, part C1; the subsystem numbers, memory
-// regions, connectors and lamps are those by which LinuxCNC's hm2_pci knows cards and names their pins.
+// regions, connectors and lamps are those of LinuxCNC's hm2_pci.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ constexpr std::size_t MOST_PCI_PORTS = 6;
 
 /// A type of card.
 struct PciCard {
-    PciIds ids;  ///< of Mesa's own chips the subsystem is not compared
+    PciIds ids;  ///< for Mesa's own chips the subsystem is not compared
     std::string_view hal_name;
     std::uint8_t region = 0;  ///< the memory region (BAR) of the registers
     std::uint8_t ports = 0, port_width = 0, leds = 0;

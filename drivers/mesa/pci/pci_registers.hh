@@ -11,10 +11,10 @@ namespace mw::mesa {
 
 constexpr std::size_t PCI_REGISTER_BYTES = 0x10000;
 
-/// An access to PCI has no errors: a removed card reads as ones.
+/// An access to PCI reports no errors: a removed card reads as ones.
 class PciRegisters final : public RegisterAccess {
   public:
-    /// `registers` are PCI_REGISTER_BYTES; `release` is called at the end.
+    /// `registers` has PCI_REGISTER_BYTES; `release` is called at the end.
     explicit PciRegisters(volatile std::uint32_t *registers, std::function<void()> release = {})
         : registers_(registers), release_(std::move(release)) {}
     ~PciRegisters() override {
@@ -40,7 +40,7 @@ class PciRegisters final : public RegisterAccess {
     bool isImmediate() const noexcept override { return true; }
 
   private:
-    /// The addresses wrap, so that no access is outside.
+    /// The addresses wrap, so that no access is out of range.
     static constexpr std::size_t word_of(std::uint16_t address, std::size_t i) noexcept {
         return (address / 4U + i) % (PCI_REGISTER_BYTES / 4);
     }

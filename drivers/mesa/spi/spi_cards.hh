@@ -11,11 +11,12 @@
 
 namespace mw::mesa::spi {
 
-/// A card that fails five times in a row is stopped: a single disturbed bit is not a fault of the machine.
+/// A card is stopped after five consecutive failures, because a single disturbed bit is not a fault of the
+/// machine.
 constexpr int MOST_FAILURES = 5;
 
-/// The card of a firmware with this name of 8 characters, such as MESA7I90. An unknown one has its own name
-/// without MESA, and is described by its firmware.
+/// The card of a firmware with this name of 8 characters, such as MESA7I90. An unknown card gets its name
+/// without MESA, and its properties from the firmware.
 inline DirectCard card_of(std::string_view board_name) {
     if (board_name == "MESA7I90") {
         return {.hal_name = "7i90",

@@ -16,8 +16,8 @@ constexpr int MOST_IN_COMMAND = 127;
 /// SPI mode 0; the clock is idle low and data are valid at its rising edge.
 constexpr std::uint8_t SPI_MODE = 0;
 
-/// The command for `count` (1 to MOST_IN_COMMAND) consecutive registers: 31 to 16 address, 15 to 12 access,
-/// 11 the address counts on, 10 to 4 count.
+/// The command for `count` (1 to MOST_IN_COMMAND) consecutive registers: bits 31 to 16 address, 15 to 12
+/// access, 11 increment of the address, 10 to 4 count.
 constexpr std::uint32_t command_word(Access access, std::uint16_t address, int count) noexcept {
     constexpr std::uint32_t COUNTS_ON = 1U << 11U;
     return (std::uint32_t{address} << 16U) | (static_cast<std::uint32_t>(access) << 12U) | COUNTS_ON |
@@ -29,7 +29,7 @@ constexpr std::size_t transfer_words(std::size_t registers) noexcept {
     return registers + (registers + MOST_IN_COMMAND - 1) / MOST_IN_COMMAND;
 }
 
-/// Words as a controller sends them that knows bytes only, the highest byte first, or back. The same for both
+/// Converts words for a controller that transfers only bytes, highest byte first. The same for both
 /// directions.
 inline void swap_bytes(std::span<std::uint32_t> words) noexcept {
     for (std::uint32_t &word : words) {

@@ -7,13 +7,13 @@
 
 namespace mw::mesa::spi {
 
-/// For the clock of a transfer.
+/// Selects the clock of a transfer.
 enum class Direction : std::uint8_t { READS, WRITES };
 
 class Device {
   public:
     virtual ~Device() = default;
-    /// Sends the words and replaces them by the received ones; returns 0, or the errno.
+    /// Sends the words and replaces them by the received words; returns 0, or the errno.
     virtual int transfer(std::span<std::uint32_t> words, Direction direction) noexcept = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What happens while a board is loaded and unloaded.
+// Loading and unloading of a board.
 #include <algorithm>
 
 #include "drivers/mesa/spi/spi_codec.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The registers of a board on SPI: one transfer reads all of a cycle, and one writes all.
+// The registers of a board on SPI: one transfer for all reads of a cycle, and one for all writes.
 #pragma once
 
 #include <memory>

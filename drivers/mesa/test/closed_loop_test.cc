@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The driver against the simulated board, which was written from the same description by another person:
-// motors end where HAL commands them, also when the network loses packets.
+// Tests the driver with the simulated board, which was written from the same description by another person:
+// motors end at the commanded position, also when the network loses packets.
 #include <cmath>
 #include <random>
 
@@ -26,7 +26,7 @@ void prepare_stepgen(Rig &rig, const std::string &name) {
     rig.pins.set(name + ".enable", 1);
 }
 
-/// A command that accelerates at random within 2000 mm/s2 and 100 mm/s, and rests at the end.
+/// A command that accelerates at random within 2000 mm/s2 and 100 mm/s, and stops at the end.
 class RandomCommand {
   public:
     explicit RandomCommand(unsigned seed) : rng_(seed) {}
@@ -184,7 +184,7 @@ TEST(MesaClosedLoop, TheRecordOfCyclesIsRightInTheCycleThatStopsTheTraffic) {
     }
 }
 
-// Random arms at random speeds; the index is at 0.25 rev, 1000 counts, of each turn of 4000.
+// Random arms at random speeds; the index is at 0.25 rev, which is count 1000 of each revolution of 4000.
 TEST(MesaClosedLoop, EachIndexIsLatchedWhereItIs) {
     for (const char *faults : {"", "seed 5\nto_board loss=0.05\nto_host loss=0.05"}) {
         Rig rig({.config = "num_stepgens=1 num_encoders=1", .physics = STEPPER, .faults = faults});
@@ -206,7 +206,7 @@ TEST(MesaClosedLoop, EachIndexIsLatchedWhereItIs) {
                 armed = false;
                 ++latched;
                 const auto raw = static_cast<std::int64_t>(rig.pins.get("encoder.00.rawlatch"));
-                // A step is 20 counts, and the shaft jumps over the index within it.
+                // A step is 20 counts, within which the shaft jumps over the index.
                 const auto off = ((raw - 1000) % 4000 + 4000) % 4000;
                 ASSERT_TRUE(off <= 20 || off >= 3980)
                     << "raw latch " << raw << " in cycle " << i << " with '" << faults << "'";
@@ -229,7 +229,7 @@ TEST(MesaClosedLoop, WithoutItsHostTheBoardTurnsItsOutputsOff) {
     const std::int64_t after = rig.steps(0);
     // 50 mm/s for the 5 ms of the watchdog and one period.
     EXPECT_LE(after - before, static_cast<std::int64_t>(50 * SCALE * 0.0061) + 1);
-    // The host returns: it sees the bite, and nothing moves until a user clears it.
+    // The host returns: it detects the bite, and nothing moves until a user resets it.
     for (int i = 0; i < 100; ++i) {
         rig.cycle();
     }
@@ -247,8 +247,7 @@ TEST(MesaClosedLoop, WithoutItsHostTheBoardTurnsItsOutputsOff) {
     for (int i = 0; i < 1000; ++i) {
         rig.cycle();
     }
-    // The step generator has continued counting while its pins were off: the motor makes only the steps of
-    // the new move.
+    // The step generator has counted while its pins were off; the motor makes only the steps of the new move.
     EXPECT_NEAR(static_cast<double>(rig.steps(0) - after), 1.0 * SCALE, 1.0);
 }
 

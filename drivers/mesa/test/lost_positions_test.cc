@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The driver reports it once, with the cause, when its positions are no longer those of the machine, and
-// never otherwise.
+// Tests that the driver reports once, with the cause, when its positions are no longer those of the machine,
+// and that it does not report otherwise.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -15,12 +15,12 @@ constexpr const char *MOTOR_WITH_ENCODER =
 constexpr const char *STEPPER_CONFIG = "num_stepgens=1 num_encoders=1",
                      *SERVO_CONFIG = "num_stepgens=0 num_encoders=1";
 
-/// Runs cycles and collects what the driver says about positions.
+/// Runs cycles and collects the driver's reports about positions.
 struct Watched {
     Rig rig;
     int losses = 0;
     PositionLoss cause = PositionLoss::NONE;
-    int first_cycle = -1;  ///< of the first loss
+    int first_cycle = -1;  ///< cycle of the first loss
 
     explicit Watched(const RigPlan &plan) : rig(plan) {
         if (plan.config == STEPPER_CONFIG) {
@@ -111,7 +111,7 @@ TEST(MesaLostPositions, CountersThatRestartDoNotMoveTheShownPositions) {
     EXPECT_EQ(watched.rig.pins.get("encoder.00.count"), counts);
 }
 
-// After a bite the step generators run on without their pins. Encoders count what the motor does.
+// After a bite the step generators continue without their pins. Encoders count the movement of the motor.
 TEST(MesaLostPositions, ABiteLosesThoseOfEnabledStepGeneratorsOnly) {
     Watched stepper({.config = STEPPER_CONFIG, .physics = MOTOR_WITH_ENCODER});
     stepper.run(500);

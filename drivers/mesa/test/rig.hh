@@ -52,7 +52,7 @@ class Rig {
         next_ns_ = transport->now_ns();
     }
 
-    /// One cycle of a servo thread.
+    /// Runs one cycle of a servo thread.
     void cycle() {
         read();
         write();

@@ -17,7 +17,7 @@ class MesaSmartSerial : public ::testing::Test {
     void load(const std::string &modes = "00xxxxxx", const std::string &faults = "") {
         rig = std::make_unique<Rig>(
             RigPlan{.config = "num_stepgens=1 sserial_port_0=" + modes, .physics = CARDS, .faults = faults});
-        // Single packets that are lost do not stop the bus, nor do they let the watchdog bite.
+        // Single lost packets do not stop the bus and do not cause a bite of the watchdog.
         rig->bus->settings.error_limit = 1'000'000;
         rig->pins.set("watchdog.timeout_ns", 50'000'000);
         cycle(40);
@@ -36,7 +36,7 @@ class MesaSmartSerial : public ::testing::Test {
     }
     void set(const std::string &pin, double value) { rig->pins.set(pin, value); }
     double get(const std::string &pin) { return rig->pins.get(pin); }
-    /// Another master stops the cards: the next exchanges fail, as without a cable.
+    /// Another master stops the cards; the next exchanges fail, as without a cable.
     void disturb() { rig->simulated.firmware().write(0x5A00, 0x8FF); }
 
     std::unique_ptr<Rig> rig;

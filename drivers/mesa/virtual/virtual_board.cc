@@ -14,19 +14,19 @@ namespace mw::mesa {
 
 namespace {
 
-/// The time of a board: it advances with a clock, and is ahead of it while packets travel or accesses take
-/// time.
+/// The time of a board. It advances with a clock, and is ahead of it while packets are in transit or accesses
+/// take time.
 class FollowedClock {
   public:
     explicit FollowedClock(std::function<std::int64_t()> clock_ns)
         : clock_ns_(std::move(clock_ns)), last_ns_(clock_ns_()) {}
 
-    /// The time now, for a board that is at `board_ns`.
+    /// The current time for a board that is at `board_ns`.
     std::int64_t now(std::int64_t board_ns) const {
         return std::max(begin_ns_ + (clock_ns_() - last_ns_), board_ns);
     }
-    /// As now(). When the clock has moved, its next step counts from here, so that the lead of the board
-    /// within a cycle does not add up.
+    /// As now(). When the clock has advanced, its next step counts from here, so that the lead of the board
+    /// within a cycle does not accumulate.
     std::int64_t follow(std::int64_t board_ns) {
         const std::int64_t now_ns = now(board_ns), clock = clock_ns_();
         if (clock != last_ns_) {
@@ -38,7 +38,7 @@ class FollowedClock {
 
   private:
     std::function<std::int64_t()> clock_ns_;
-    std::int64_t last_ns_;       ///< of the clock
+    std::int64_t last_ns_;       ///< last time of the clock
     std::int64_t begin_ns_ = 0;  ///< time of the board when the clock was at last_ns_
 };
 

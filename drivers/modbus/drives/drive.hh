@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A frequency drive on a serial line, by Modbus RTU: its registers, and the loop that all kinds share. [one
-// thread, not realtime]
+// A frequency drive on a serial line with Modbus RTU: its registers, and the loop of all types. [one thread,
+// not realtime]
 #pragma once
 
 #include <chrono>
@@ -22,10 +22,10 @@ struct Line {
     int baud = 19200, bits = 8, stop = 1;
     char parity = 'E';  ///< N, E, O
     int slave = 1;
-    bool shown = false;  ///< every message on standard error
+    bool shown = false;  ///< all messages on standard error
 };
 
-/// The registers of one drive. A failure is reported once, until the drive works again.
+/// The registers of one drive. A failure is reported once, until the drive answers again.
 class Registers {
   public:
     Registers(std::string component, Line line);
@@ -33,7 +33,7 @@ class Registers {
     Registers(const Registers &) = delete;
     Registers &operator=(const Registers &) = delete;
 
-    /// False: no answer, or an exception. The line is opened again after an error that is not the drive's.
+    /// False: no answer, or an exception. The line is opened again after an error that is not from the drive.
     bool read(int address, std::span<std::uint16_t> into);
     bool write(int address, std::uint16_t value);
 
@@ -56,7 +56,7 @@ class Registers {
     std::chrono::steady_clock::time_point retry_{};
 };
 
-/// Creates pins and parameters COMPONENT.NAME; reports errors of HAL at the end.
+/// Creates pins and parameters COMPONENT.NAME; reports HAL errors at the end.
 class PinMaker {
   public:
     PinMaker(int comp_id, const std::string &component) : id_(comp_id), component_(component) {}
@@ -90,13 +90,13 @@ class Drive {
     virtual bool make_pins(int comp_id, const std::string &name) = 0;
     /// One round of reading and writing.
     virtual void step(Registers &registers) = 0;
-    /// The last writes to the drive when the component ends.
+    /// The last writes to the drive, when the component ends.
     virtual void release(Registers &registers) = 0;
-    /// Until the next step [s].
+    /// Time until the next step [s].
     virtual double pause_s() const = 0;
 };
 
-/// Steps until `stop` is not 0, then releases the drive: it never runs without its component.
+/// Calls step() until `stop` is not 0, then releases the drive, so that it never runs without its component.
 Result<> run(Drive &drive, const std::string &name, const Line &line, const volatile std::sig_atomic_t &stop);
 
 /// A speed as a register in steps of `unit_hz`: 0 for NaN, limited to the range of the register.

@@ -14,7 +14,8 @@ constexpr int SPEED = 0x091a, RUN = 0x091b, DIRECTION = 0x091c, FAULT_RESET = 0x
 constexpr int STATE = 0x2100;
 constexpr std::size_t STATE_WORDS = 13;
 constexpr double HZ = 0.1, TENTH = 0.1, FALLBACK_DECEL_S = 20.0;
-/// After this number of transactions without an answer the drive was off: its settings are written again.
+/// After this number of transactions without an answer the drive counts as switched off, and its settings are
+/// written again.
 constexpr int LOST_AFTER = 10;
 
 struct Pins {
@@ -106,7 +107,7 @@ bool Gs2::make_pins(int id, const std::string &name) {
 }
 
 /// Writes its times, its stop mode, and a stop command. A spindle that was on before, or while the drive did
-/// not answer, does not start by itself: it runs at the next rising edge of spindle-on.
+/// not answer, does not start by itself, but at the next rising edge of spindle-on.
 bool Gs2::begin(Registers &registers) {
     const bool coasts = settings_.decel_s <= 0.0;
     const double decel_s = coasts ? FALLBACK_DECEL_S : settings_.decel_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The kinds of drives, with the pins and the behaviour towards them of LinuxCNC's programs of the same names.
+// The types of drives, with the pins and the behaviour of LinuxCNC's programs of the same names.
 #pragma once
 
 #include <memory>

@@ -50,7 +50,7 @@ class Vfdb final : public Drive {
     int rounds_ = 0;
     double wanted_hz_ = 0.0;
     bool running_ = false, was_reached_ = false;
-    bool off_required_ = false;  ///< the drive did not answer: it does not start by itself afterwards
+    bool off_required_ = false;  ///< the drive did not answer, and must not start by itself afterwards
 };
 
 bool Vfdb::make_pins(int id, const std::string &name) {
@@ -147,7 +147,7 @@ bool Vfdb::command(Registers &registers) {
     running_ = *p.spindle_on && !off_required_;
     const std::uint16_t act = !running_ ? STOP : *p.jog ? JOG : RUN;
     *p.freq_cmd = wanted_hz_;
-    // The speed first: a drive with a run command uses its last speed.
+    // The speed is written first, because a drive with a run command uses its last speed.
     return registers.write(SPEED, frequency_word(wanted_hz_, HZ)) &&
            registers.write(COMMAND, static_cast<std::uint16_t>(act | (running_ ? way : FORWARD)));
 }
@@ -160,7 +160,7 @@ void Vfdb::step(Registers &registers) {
     *p.modbus_ok = done && registers.good_in_a_row() >= GOOD_IN_A_ROW;
     *p.error_count = registers.errors();
     if (registers.bad_in_a_row() >= LOST_AFTER) {
-        *p.freq_limit = 0.0;  // it may have another limit afterwards
+        *p.freq_limit = 0.0;  // the drive may have another limit afterwards
         off_required_ = true;
     }
 }

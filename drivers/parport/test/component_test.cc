@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The component with simulated ports, as a HAL file uses it.
+// Tests the component with simulated ports, as a HAL file uses it.
 #include <gtest/gtest.h>
 
 #include "components/test/bench.hh"

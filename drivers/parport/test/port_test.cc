@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Levels of the connector's pins against the table of the registers, and what is written when.
+// Tests the levels of the connector's pins with the table of the registers, and the writes.
 #include <map>
 #include <vector>
 
@@ -10,7 +10,7 @@
 namespace mw::parport {
 namespace {
 
-/// Records writes; the levels of the connector follow from them by the electrical rules of the port.
+/// Records writes; the levels of the connector are derived from them by the electrical rules of the port.
 struct Recorder final : PortAccess {
     std::vector<std::pair<Register, std::uint8_t>> writes;
     std::map<Register, std::uint8_t> inputs;
@@ -153,7 +153,7 @@ TEST(Parport, AResetMakesOneStepInEachPeriod) {
                                                                                {Register::DATA, 0x02}}));
     recorder.writes.clear();
     port.write(direction);
-    port.reset(step, step);  // an inverted step pin rests high
+    port.reset(step, step);  // an inverted step pin is high when inactive
     EXPECT_EQ(recorder.last(Register::DATA), 0x03);
 }
 

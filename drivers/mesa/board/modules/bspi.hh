@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Buffered SPI: 16 channels, each with its descriptor of a frame. Sources: shared/hardware.md, part B10; the
-// descriptor is the one that LinuxCNC's mesa_7i65 writes. Without a peer the data come back, as with a wire
-// from output to input.
+// Buffered SPI: 16 channels, each with a descriptor of its frames. Sources: shared/hardware.md, part B10; the
+// descriptor is the one that LinuxCNC's mesa_7i65 writes. Without a peer the data return, as with a wire from
+// output to input.
 #pragma once
 
 #include <array>

@@ -12,11 +12,11 @@ enum : unsigned { BASE_RATE, PHASE_ERROR, CONTROL0, CONTROL1, TIMERS_LOW, TIMERS
 /// The size of the phase accumulator [bits]; the low byte of control 1 reports it.
 constexpr std::uint32_t DDS_BITS = 42;
 constexpr double PROPORTIONAL = 0.25, INTEGRAL = 0.02;
-/// The clocks of two computers differ by far less.
+/// The clocks of two computers differ by much less.
 constexpr double MAX_CORRECTION = 0.05;
 constexpr double ONE_S_NS = 1e9, PERIOD_UNITS = 4294967296.0, TIMER_UNITS = 65536.0;
 
-/// Within a half of a period around 0.
+/// Wraps a phase to half a period around 0.
 double wrapped(double phase) {
     return phase - std::round(phase);
 }

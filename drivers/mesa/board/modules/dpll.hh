@@ -16,7 +16,7 @@ struct Dpll {
     std::uint32_t base_rate = 0, control0 = 0, control1 = 0;
     std::array<std::uint16_t, 4> timers{};
     double phase = 0;       ///< at `time_ns` [periods]
-    double correction = 0;  ///< of the frequency, as a part of it
+    double correction = 0;  ///< correction of the frequency, as a fraction of it
     std::int64_t time_ns = 0;
     std::int32_t phase_error = 0;  ///< at the last sync [periods / 2^32]
 };

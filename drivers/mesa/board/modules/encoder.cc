@@ -18,8 +18,8 @@ std::int64_t floor_divide(std::int64_t value, std::int64_t step) {
     return multiply_divide(value, 1, step);
 }
 
-/// The count at which the shaft arrives when the index becomes active (or inactive) for the first or for the
-/// last time within a move.
+/// The count of the shaft when the index becomes active (or inactive) for the first or the last time during a
+/// move.
 std::optional<std::int64_t> index_edge(const Encoder &encoder, const ShaftMove &move, bool first) {
     const Shaft &shaft = encoder.shaft;
     if (shaft.counts_per_rev == 0 || move.from_count == move.to_count) {
@@ -27,8 +27,8 @@ std::optional<std::int64_t> index_edge(const Encoder &encoder, const ShaftMove &
     }
     const bool up = move.to_count > move.from_count;
     const bool entered = (encoder.control & Control::INDEX_POLARITY) != 0;
-    // Upwards the index begins at its count and ends at the next one; downwards it begins at its count, too,
-    // and ends at the one below.
+    // Upwards the index begins at its count and ends at the next count; downwards it also begins at its count
+    // and ends at the count below.
     const std::int64_t edge = shaft.index_count + (entered ? 0 : (up ? 1 : -1));
     const std::int64_t rev = shaft.counts_per_rev;
     const auto at_or_below = [&](std::int64_t count) { return edge + floor_divide(count - edge, rev) * rev; };
@@ -42,12 +42,12 @@ std::optional<std::int64_t> index_edge(const Encoder &encoder, const ShaftMove &
     return found < move.from_count && found >= move.to_count ? std::optional(found) : std::nullopt;
 }
 
-/// The time of the last edge of a move: when the shaft arrived at the last count.
+/// The time of the last edge of a move: the time at which the shaft reached the last count.
 std::int64_t time_of_last_edge(const ShaftMove &move) {
     const std::int64_t counts =
         move.to_count > move.from_count ? move.to_count - move.from_count : move.from_count - move.to_count;
-    // Edges lie in the middle of equal parts of the time: where between two edges the move began is not
-    // known.
+    // Edges are in the middle of equal parts of the time, because it is not known where the move began
+    // between two edges.
     return move.to_ns - (move.to_ns - move.from_ns) / (2 * counts);
 }
 
@@ -133,7 +133,7 @@ std::uint32_t EncoderModule::read(RegisterPlace place) {
     case DIVIDER: return divider_;
     case TIME_STAMP: return time_stamp(time_ns_);
     case FILTER: return filter_rate_;
-    default: return 0;  // A driver finds the DPLL timer register by a value that does not read back.
+    default: return 0;  // A driver detects the DPLL timer register by a value that does not read back.
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Encoder counters. Source: shared/hardware.md, part B5, with the control bits as measured on the RTL.
-// The index is high for one count in each revolution. Index mask, gating by A and B, the filter and the
-// counter mode are registers without an effect.
+// Encoder counters. Source: shared/hardware.md, part B5, with the control bits as measured on the RTL. The
+// index is high for one count in each revolution. Index mask, gating by A and B, filter and counter mode have
+// no effect.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ struct EncoderControl {
                                    PROBE_POLARITY = 1U << 12U, ONCE = 1U << 6U, CLEAR_ON_INDEX = 1U << 5U,
                                    LATCH_ON_INDEX = 1U << 4U, INDEX_POLARITY = 1U << 3U, INDEX_LEVEL = 4,
                                    B_LEVEL = 2, A_LEVEL = 1;
-    /// The bits that a host writes; the others are levels.
+    /// The bits that a host writes; the other bits are levels.
     static constexpr std::uint32_t WRITABLE = 0x7FF8;
 };
 
@@ -29,7 +29,7 @@ struct Shaft {
     std::int64_t counts_per_rev = 0;  ///< 0: no index
 };
 
-/// A movement of the shaft, even in time.
+/// A uniform movement of the shaft.
 struct ShaftMove {
     std::int64_t from_count = 0, to_count = 0;
     std::int64_t from_ns = 0, to_ns = 0;
@@ -47,10 +47,10 @@ struct Encoder {
 
 bool index_level(const Shaft &shaft, std::int64_t count);
 std::uint16_t counter_of(const Encoder &encoder);
-/// The counter, as it was when the shaft was at `count`.
+/// The value of the counter when the shaft was at `count`.
 std::uint16_t counter_at(const Encoder &encoder, std::int64_t count);
-/// Moves the shaft; the index latches or clears the counter on the way. The work does not grow with the
-/// length of the move.
+/// Moves the shaft; the index latches or clears the counter during the move. The run time does not depend on
+/// the length of the move.
 void move_shaft(Encoder &encoder, const ShaftMove &move);
 /// Sets the level of the probe input; its active edge latches the counter.
 void set_probe(Encoder &encoder, bool level);

@@ -27,13 +27,13 @@ std::int64_t filter_ns(const InputSettings &settings, unsigned input, unsigned i
 }
 
 void move_mpg(MpgCounter &counter, unsigned from_ab, unsigned to_ab) {
-    // The place of the levels BA in the order 00, 01, 11, 10.
+    // Position of the levels BA in the order 00, 01, 11, 10.
     constexpr unsigned PLACE[] = {0, 1, 3, 2};
     const unsigned way = (PLACE[to_ab & 3U] - PLACE[from_ab & 3U]) & 3U;
     if (way != 1 && way != 3) {
         return;
     }
-    // An edge of A while B is low lies between 00 and 01.
+    // An edge of A while B is low is between 00 and 01.
     const bool counted = counter.counts_all_edges || ((from_ab | to_ab) & 2U) == 0;
     if (counted) {
         counter.count = static_cast<std::uint8_t>(counter.count + (way == 1 ? 1U : 0xFFU));

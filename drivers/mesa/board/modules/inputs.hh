@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// InM and InMux: inputs with filters and MPG counters. Source: shared/hardware.md, part B7. The scan rate
-// follows from what LinuxCNC's hm2_eth writes: ClockLow / (4 * (divisor + 1) * inputs).
+// InM and InMux: inputs with filters and MPG counters. Source: shared/hardware.md, part B7. The scan rate is
+// derived from the values that LinuxCNC's hm2_eth writes: ClockLow / (4 * (divisor + 1) * inputs).
 #pragma once
 
 #include <array>
@@ -19,21 +19,21 @@ struct InputSettings {
     std::uint32_t slow = 0;     ///< the inputs that use the slow scans
 };
 
-/// How long a level has to last until an input takes it.
+/// Time for which a level must be stable before an input takes it.
 std::int64_t filter_ns(const InputSettings &settings, unsigned input, unsigned inputs,
                        std::uint32_t clock_hz);
 
 /// A counter of two inputs A and B, 8 bits.
 struct MpgCounter {
     std::uint8_t count = 0;
-    bool counts_all_edges = false;  ///< 4x; else the edges of A while B is low
+    bool counts_all_edges = false;  ///< counts all edges (4x); else the edges of A while B is low
 };
 /// A changes ahead of B when it counts upwards.
 void move_mpg(MpgCounter &counter, unsigned from_ab, unsigned to_ab);
 
 /// Registers: control (bits 4 to 0 highest input), inputs with the slow filter, filtered levels, raw levels,
-/// MPG counters (a byte each; bit 0 of the byte written: 4x). Counter n has inputs 2n and 2n + 1, behind
-/// their filters.
+/// MPG counters (a byte each; bit 0 of the byte written: 4x). Counter n has inputs 2n and 2n + 1, after their
+/// filters.
 class InputModule final : public Module {
   public:
     /// The levels of all inputs, one bit each.

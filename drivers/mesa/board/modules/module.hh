@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the modules of a firmware have in common. Each module is a few plain structs with functions of
-// (registers, time); the class on top connects them to the register space.
+// The common interface of the modules of a firmware. Each module is a few plain structs with functions of
+// (registers, time); a class connects them to the register space.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace mw::mesa::board {
 /// A register within its module.
 struct RegisterPlace {
     unsigned reg = 0, instance = 0;
-    unsigned word = 0;  ///< of registers that have several words, such as one for each channel
+    unsigned word = 0;  ///< word of a register that has several words, for instance one for each channel
 };
 
 /// One module with all of its instances. The firmware calls advance() up to the time of each access before
@@ -19,7 +19,7 @@ class Module {
   public:
     virtual ~Module() = default;
 
-    /// Reading may have an effect, as on the real board (the sync register of the DPLL).
+    /// A read may have an effect, as on the real board (the sync register of the DPLL).
     virtual std::uint32_t read(RegisterPlace place) = 0;
     virtual void write(RegisterPlace place, std::uint32_t value) = 0;
     /// Advances the time to `to_ns` [ns since power-up].
@@ -30,19 +30,19 @@ class Module {
     virtual bool output(unsigned /*unit*/, std::uint8_t /*function*/) const { return false; }
     /// The level at an input of a unit, at the current time. The firmware reports it after each time step.
     virtual void input(unsigned /*unit*/, std::uint8_t /*function*/, bool /*level*/) {}
-    /// The hardware at the pins has moved to the time of the last advance().
+    /// Called when the hardware at the pins has moved to the time of the last advance().
     virtual void sample() {}
     /// The maximum time step after which the module must see its inputs [ns]; 0: any.
     virtual std::int64_t input_span_ns() const { return 0; }
-    /// The number of registers; registers behind those of the descriptor may exist (DPLL timers).
+    /// The number of registers; there may be more than in the descriptor (DPLL timers).
     virtual unsigned registers() const = 0;
     /// The number of consecutive words of a register in each instance.
     virtual unsigned words(unsigned /*reg*/) const { return 1; }
-    /// The register is in each instance, although the descriptor says otherwise.
+    /// True if the register exists in each instance although the descriptor does not list it.
     virtual bool isInEachInstance(unsigned /*reg*/) const { return false; }
 };
 
-/// A module without a model in this board: it reads 0, and writes have no effect.
+/// A module that is not simulated: it reads 0, and writes have no effect.
 class UnknownModule final : public Module {
   public:
     explicit UnknownModule(unsigned registers) : registers_(registers) {}

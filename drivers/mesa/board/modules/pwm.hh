@@ -27,7 +27,7 @@ class PwmModule final : public Module {
 
     unsigned instances() const { return static_cast<unsigned>(generators_.size()); }
     bool isEnabled(unsigned unit) const { return ((enable_ >> unit) & 1U) != 0; }
-    /// From -1 to 1; 0 when it is not enabled.
+    /// Duty cycle from -1 to 1; 0 when the generator is not enabled.
     double duty(unsigned unit) const;
 
   private:

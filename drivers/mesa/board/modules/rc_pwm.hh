@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Pulses for RC servos. Source: shared/hardware.md, part B10; the scale of the registers is that of the
-// values which LinuxCNC's hm2_eth writes: pulses of (width + 1) * 16 ticks in each period of (rate + 2)
-// ticks.
+// Pulses for RC servos. Source: shared/hardware.md, part B10; the scale of the registers is derived from the
+// values that LinuxCNC's hm2_eth writes: pulses of (width + 1) * 16 ticks in each period of (rate + 2) ticks.
 #pragma once
 
 #include <vector>
@@ -10,8 +9,8 @@
 
 namespace mw::mesa::board {
 
-/// Registers: width of each pulse, rate of all. A width with all bits set, which the driver writes for 0,
-/// gives no pulse.
+/// Registers: width of each pulse, rate of all generators. A width with all bits set, which the driver writes
+/// for 0, generates no pulse.
 class RcPwmModule final : public Module {
   public:
     RcPwmModule(unsigned instances, std::uint32_t clock_hz)

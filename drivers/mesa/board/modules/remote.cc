@@ -14,9 +14,9 @@ using enum FieldType;
 using enum FieldDirection;
 
 constexpr std::uint8_t DATA_RECORD = 0xA0, MODE_RECORD = 0xB0, SOFTWARE_MODE = 1;
-/// Where the description begins; lower addresses hold the values.
+/// Address of the description; the values are at lower addresses.
 constexpr std::uint16_t DESCRIPTION = 0x100;
-/// Where the globals begin, and the bytes of each.
+/// Address of the globals, and the size of each [bytes].
 constexpr std::uint16_t GLOBAL_VALUES = 0x80, GLOBAL_BYTES = 4;
 
 constexpr RemoteField FIELDS_7I76[] = {
@@ -34,7 +34,7 @@ constexpr RemoteField FIELDS_7I76[] = {
 };
 constexpr RemoteMode MODES_7I76[] = {{"I/O_Spin", 0}, {"I/O_Spin_Ana", 1}, {"I/O_Spin_Ana_Enc", 2}};
 
-/// The 7I77 has two channels: field inputs and outputs, and the analogue outputs.
+/// The 7I77 has two channels: field inputs and outputs, and analog outputs.
 constexpr RemoteField FIELDS_7I77[] = {
     {"Output", "None", 16, BITS, OUTPUT, 0, 0},
     {"Input", "None", 32, BITS, INPUT, 0, 0},
@@ -89,7 +89,7 @@ constexpr RemoteCard CARDS[] = {
     {"7i84", "7I84", FIELDS_7I84, MODES_IO, GLOBALS, {}},
 };
 
-/// Takes or sets `bits` bits at `position` of the user words.
+/// Reads or sets `bits` bits at `position` of the user words.
 std::uint32_t bits_of(const UserWords &words, unsigned position, unsigned bits) {
     std::uint32_t value = 0;
     for (unsigned i = 0; i < bits && (position + i) / 32 < words.size(); ++i) {
@@ -171,7 +171,7 @@ void Remote::append_list(const std::vector<std::uint16_t> &addresses) {
 }
 
 void Remote::describe() {
-    // The values lie below the description and keep what the host has written.
+    // The values are below the description and keep the data of the host.
     memory_.resize(DESCRIPTION);
     std::vector<std::uint16_t> process, global;
     std::uint16_t value_address = GLOBAL_VALUES;

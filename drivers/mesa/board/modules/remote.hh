@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Smart serial remotes: cards that describe their own data. Source: shared/hardware.md, part B9, for the
-// 7I76; the names of the other cards' data are those of the manual page sserial(9), their widths are
+// 7I76; for other cards the names of the data are from the manual page sserial(9), and the widths are
 // examples.
 #pragma once
 
@@ -30,9 +30,9 @@ struct RemoteField {
     std::string_view name, unit;
     std::uint8_t bits = 0;
     FieldType type = FieldType::BITS;
-    FieldDirection direction = FieldDirection::INPUT;  ///< seen from the host: INPUT is what it reads
+    FieldDirection direction = FieldDirection::INPUT;  ///< as seen by the host, which reads an INPUT
     float min = 0, max = 0;
-    std::uint8_t first_mode = 0, last_mode = 255;  ///< the modes in which the card has it
+    std::uint8_t first_mode = 0, last_mode = 255;  ///< range of modes in which the card has the field
 };
 
 struct RemoteMode {
@@ -40,7 +40,7 @@ struct RemoteMode {
     std::uint8_t index = 0;
 };
 
-/// A value that is read and written in set-up mode only.
+/// A value that is read and written only in set-up mode.
 struct RemoteGlobal {
     std::string_view name;
     std::uint8_t bits = 0;
@@ -48,10 +48,10 @@ struct RemoteGlobal {
     std::uint32_t value = 0;  ///< at power-up; 0: the serial number
 };
 
-/// A type of card, or the part of it that one channel serves.
+/// A type of card, or the part of it on one channel.
 struct RemoteCard {
-    std::string_view key;   ///< in the physics file
-    std::string_view name;  ///< 4 characters, as the card reports it: 7I76
+    std::string_view key;   ///< key in the physics file
+    std::string_view name;  ///< 4 characters, as reported by the card: 7I76
     std::span<const RemoteField> fields;
     std::span<const RemoteMode> modes;
     std::span<const RemoteGlobal> globals;
@@ -59,7 +59,7 @@ struct RemoteCard {
         next_channel;  ///< the key of the part on the next channel; empty: the card has one channel
 };
 
-/// The known cards, found in any case: 7i73, 7i76, 7i77 (on two channels), 7i84. nullptr: unknown.
+/// The known cards, in upper or lower case: 7i73, 7i76, 7i77 (two channels), 7i84. nullptr: unknown.
 const RemoteCard *find_remote_card(std::string_view name);
 std::vector<std::string_view> remote_card_names();
 
@@ -73,14 +73,14 @@ class Remote {
 
     /// Content of the user registers after the start of set-up: serial number, name, addresses of the lists.
     UserWords identity() const;
-    /// The fields of the mode are exchanged from now on.
+    /// From now on the fields of this mode are exchanged.
     void set_mode(std::uint8_t mode);
     std::uint8_t read_byte(std::uint16_t address) const;
     void write_byte(std::uint16_t address, std::uint8_t value);
     /// Takes the outputs of the host; returns the inputs.
     UserWords exchange(const UserWords &from_host);
 
-    /// An input of the card, or the last value of an output; by the name of the field.
+    /// Sets an input of the card, by the name of the field.
     void set_value(std::string_view field, std::uint32_t value);
     std::uint32_t value(std::string_view field) const;
 
@@ -96,7 +96,7 @@ class Remote {
     std::uint8_t mode_ = 0;
     std::uint16_t process_list_ = 0, global_list_ = 0;
     std::vector<std::uint8_t> memory_;
-    std::vector<std::uint32_t> values_;  ///< by field
+    std::vector<std::uint32_t> values_;  ///< values by field
 };
 
 }  // namespace mw::mesa::board

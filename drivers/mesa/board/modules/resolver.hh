@@ -13,7 +13,7 @@ namespace mw::mesa::board {
 
 constexpr unsigned RESOLVER_CHANNELS = 6;
 
-/// Registers: command (0x800 + 1 to 3 sets the excitation to ClockLow / 20000, 10000, 5000; it reads 0 when
+/// Registers: command (0x800 + 1 to 3 sets the excitation to ClockLow / 20000, 10000, 5000; reads 0 when
 /// done), data, status (bit n: channel n has no signal), then of each channel velocity (part of a revolution
 /// in one period of the excitation, in 2^-32) and position (part of a revolution, in 2^-32). Both are sampled
 /// with each period.

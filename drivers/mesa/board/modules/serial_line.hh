@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A serial line from a transmitter to a receiver of the same board, and a peer that a test may connect
-// instead.
+// A serial line from a transmitter to a receiver of the same board. A test may connect a peer to it instead.
 #pragma once
 
 #include <deque>

@@ -10,12 +10,12 @@ namespace {
 using Channel = SerialPort::Channel;
 enum : unsigned { COMMAND, DATA, CS, USER0 };
 
-/// How long the processor needs: a local command, and one exchange with the channels at 2.5 Mbaud.
+/// Run times of the processor: a local command, and one exchange with the channels at 2.5 Mbaud.
 constexpr std::int64_t LOCAL_NS = 5'000, EXCHANGE_NS = 100'000, RESET_NS = 2'000'000;
 constexpr std::uint32_t MASK = 0xFF, LOCAL_ADDRESS = 0xFFF;
 constexpr std::uint32_t RESET = 0x4000, WRITE_LOCAL = 0xA000, READ_LOCAL = 0x2000, DO_IT = 0x1000;
 constexpr std::uint32_t STOP = 0x800, START_NORMAL = 0x900, START_SET_UP = 0xF00;
-/// CS: an error of the communication, because of the time limit.
+/// CS: communication error, because of the time limit.
 constexpr std::uint32_t NO_ANSWER = (1U << 13U) | (1U << 3U);
 
 /// The first bytes of the processor's memory: type, width, version 0.43, first channel, stride, processor.
@@ -165,7 +165,7 @@ void SmartSerialModule::execute(unsigned number, std::uint32_t command) {
     port.command = command;
     port.done_ns = time_ns_ + (command == 0 ? 0 : LOCAL_NS);
     const auto for_channels = [&](auto action) {
-        // Without a channel nothing is done, and the result of the last command stays.
+        // Without a channel nothing is done, and the result of the last command remains.
         std::uint32_t failed = (command & MASK) == 0 ? port.data_out : 0U;
         for (unsigned i = 0; i < SERIAL_CHANNELS; ++i) {
             const bool wanted = ((command >> i) & 1U) != 0;

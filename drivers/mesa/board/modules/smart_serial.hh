@@ -13,18 +13,19 @@
 namespace mw::mesa::board {
 
 constexpr unsigned SERIAL_CHANNELS = 8;
-constexpr std::uint32_t BAUDRATE = 2'500'000;  ///< of all cards, and of a port after its reset [bit/s]
+constexpr std::uint32_t BAUDRATE = 2'500'000;  ///< baud rate of all cards, and of a port after its reset
+                                               ///< [bit/s]
 
-/// One port: registers have separate values for reading and writing.
+/// One port. Its registers have separate values for reading and writing.
 struct SerialPort {
     struct Channel {
-        std::uint32_t cs_in = 0, cs_out = 0;  ///< written by the host; read by it
+        std::uint32_t cs_in = 0, cs_out = 0;  ///< value written by the host, value read by the host
         UserWords user_in{}, user_out{};
         std::uint32_t baudrate = BAUDRATE;
         enum class State : std::uint8_t { STOPPED, SET_UP, RUNNING } state = State::STOPPED;
     };
     std::uint32_t command = 0, data_in = 0, data_out = 0;
-    std::int64_t done_ns = 0;  ///< until then the command register reads the command
+    std::int64_t done_ns = 0;  ///< until this time the command register reads the command
     std::vector<Channel> channels{SERIAL_CHANNELS};
 };
 

@@ -26,7 +26,7 @@ constexpr std::uint8_t FIRST_OUTPUT = 0x81, LAST_OUTPUT = 0x88;
 constexpr std::uint32_t LATCH_MODES = StepgenMode::LATCH_ON_INDEX | StepgenMode::LATCH_ON_PROBE;
 /// Interval for reading the inputs while a latch waits for its edge: one step at 100,000 steps/s.
 constexpr std::int64_t LATCH_SPAN_NS = 10'000;
-/// The position in 16.8 lies above the mode.
+/// The position in 16.8 is above the mode bits.
 constexpr unsigned LATCH_SHIFT = 24, LATCH_FIELD = 8;
 constexpr unsigned FRACTION_BITS = 32;
 constexpr std::uint64_t ACCUMULATOR_MASK = (std::uint64_t{1} << 48U) - 1;
@@ -53,7 +53,7 @@ bool step_level(const Stepgen &stepgen) {
     if (rate == 0) {
         return false;
     }
-    // Ticks since the accumulator passed a whole number.
+    // Number of ticks since the accumulator passed a whole number.
     const std::uint64_t passed = rate > 0 ? fraction : FRACTION_MASK + 1 - fraction;
     return passed / static_cast<std::uint64_t>(rate > 0 ? rate : -rate) < stepgen.settings[PULSE_WIDTH];
 }
@@ -98,7 +98,7 @@ std::uint32_t StepgenModule::read(RegisterPlace place) {
     case ACCUMULATOR: return timer_.isOn() ? stepgen.latched : position_register(stepgen);
     case MODE: return stepgen.settings[MODE] | (latches_ ? stepgen.latched_position << LATCH_FIELD : 0U);
     case MASTER_RATE: return master_rate_;
-    case DPLL_TIMER: return 0;  // A driver finds the timer register by a value that does not read back.
+    case DPLL_TIMER: return 0;  // A driver detects the timer register by a value that does not read back.
     default: return stepgen.settings[place.reg];
     }
 }
@@ -144,7 +144,7 @@ bool StepgenModule::output(unsigned unit, std::uint8_t function) const {
 }
 
 void StepgenModule::input(unsigned unit, std::uint8_t function, bool level) {
-    // The numbers of the inputs begin at 1 or, where a table has more outputs, at 9.
+    // The numbers of the inputs begin at 1, or at 9 if a table has more outputs.
     const unsigned number = function & 7U;
     if (latches_ && unit < stepgens_.size() && (number == 1 || number == 2)) {
         set_latch_input(stepgens_[unit], number == 1 ? LatchInput::INDEX : LatchInput::PROBE, level);

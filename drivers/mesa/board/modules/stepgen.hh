@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Step generators. Source: shared/hardware.md, part B4. The rate is added to an accumulator of 48 bits with
-// each tick of ClockLow; its upper 16 bits are whole steps. Times of direction setup and hold do not delay
-// the accumulator in this model. Version 0xC2 latches the position at an edge of its index or probe input.
+// each tick of ClockLow; its upper 16 bits are whole steps. In this model direction setup and hold times do
+// not delay the accumulator. Version 0xC2 latches the position at an edge of its index or probe input.
 #pragma once
 
 #include <array>
@@ -30,25 +30,27 @@ enum class LatchInput : std::uint8_t { INDEX, PROBE };
 struct Stepgen {
     std::int32_t rate = 0;          ///< added each tick [steps / 2^32]
     std::uint64_t accumulator = 0;  ///< 48 bits [steps / 2^32]
-    std::uint32_t latched = 0;      ///< what the accumulator register read when the DPLL timer fired
-    std::int64_t steps = 0;         ///< whole steps since power-up, down counts negative
-    std::array<std::uint32_t, STEPGEN_REGISTERS> settings{};  ///< by the number of the register
-    std::array<std::uint32_t, STEP_TABLE_ENTRIES> table{};    ///< the entry written last is the first one
-    std::uint32_t latched_position = 0;                       ///< of index or probe, steps in 16.8
-    std::array<bool, 2> latch_levels{true, true};             ///< by LatchInput
+    std::uint32_t latched = 0;      ///< value of the accumulator register when the DPLL timer fired
+    std::int64_t steps = 0;         ///< whole steps since power-up; downward steps count negative
+    std::array<std::uint32_t, STEPGEN_REGISTERS> settings{};  ///< registers by number
+    std::array<std::uint32_t, STEP_TABLE_ENTRIES> table{};    ///< steps of the table; the last written entry
+                                                              ///< is the first step
+    std::uint32_t latched_position = 0;                       ///< position latched by index or probe, steps
+                                                              ///< in 16.8
+    std::array<bool, 2> latch_levels{true, true};             ///< levels by LatchInput
 };
 
-/// Advances by `ticks`. @return the whole steps in this time
+/// Advances by `ticks`. @return the number of whole steps in this time
 std::int64_t run_stepgen(Stepgen &stepgen, std::int64_t ticks);
 /// The accumulator register: steps in 16.16.
 std::uint32_t position_register(const Stepgen &stepgen);
 /// The level of the step output: high for the pulse width after each step.
 bool step_level(const Stepgen &stepgen);
 
-/// The level of an output, 0 or 1 for the first two; further ones exist with a table.
+/// The level of an output: 0 and 1 are step and direction; further outputs exist with a table.
 bool step_output(const Stepgen &stepgen, unsigned number);
-/// Sets the level of an input; its active edge (polarity 1: rising) latches the position where the mode asks
-/// for it.
+/// Sets the level of an input. If the latch is armed, its active edge (polarity 1: rising) latches the
+/// position.
 void set_latch_input(Stepgen &stepgen, LatchInput input, bool level);
 
 /// All step generators of a firmware.

@@ -12,7 +12,7 @@ constexpr unsigned PHASE_BITS = 10;
 constexpr std::uint32_t PHASE_MASK = (1U << PHASE_BITS) - 1;
 constexpr std::uint32_t ENABLED = 1, FAULT = 2, FAULT_IS_HIGH = 1U << 15U;
 constexpr std::uint8_t FIRST_PHASE_PIN = 0x81, FIRST_INVERTED_PIN = 0x84, ENABLE_PIN = 0x87, FAULT_PIN = 0x08;
-/// One period counts up and down.
+/// One period counts up and then down.
 constexpr std::int64_t PERIOD_COUNTS = 2 << PHASE_BITS;
 
 std::uint32_t phase_value(const ThreePhasePwm &pwm, unsigned phase) {
@@ -71,7 +71,7 @@ bool ThreePhasePwmModule::output(unsigned unit, std::uint8_t function) const {
     }
     const ThreePhasePwm &pwm = generators_[unit];
     if (function == ENABLE_PIN) {
-        return !pwm.isOn();  // active low
+        return !pwm.isOn();  // the output is active low
     }
     if (!pwm.isOn()) {
         return false;

@@ -14,7 +14,7 @@ namespace mw::mesa::board {
 struct ThreePhasePwm {
     std::uint32_t value = 0, setup = 0;
     bool enabled = false;  ///< as written by the host
-    bool faulted = false;  ///< kept until the host switches the generator on again
+    bool faulted = false;  ///< remains until the host enables the generator again
 
     bool isOn() const { return enabled && !faulted; }
 };
@@ -37,7 +37,7 @@ class ThreePhasePwmModule final : public Module {
     bool output(unsigned unit, std::uint8_t function) const override;
     void input(unsigned unit, std::uint8_t function, bool level) override;
     unsigned registers() const override { return 4; }
-    /// The setup is, too, although the descriptor does not list it.
+    /// True for the setup, although the descriptor does not list it.
     bool isInEachInstance(unsigned reg) const override { return reg < 3; }
 
     const std::vector<ThreePhasePwm> &generators() const { return generators_; }

@@ -69,7 +69,7 @@ void PacketUartModule::take(unsigned instance) {
     Port &port = ports_[instance];
     while (const auto bytes = (*lines_)[instance].receive(time_ns_)) {
         if (port.sizes.size() == MAX_FRAMES) {
-            continue;  // The FIFO is full: the frame is lost.
+            continue;  // If the FIFO is full, the frame is lost.
         }
         port.sizes.push_back(static_cast<std::uint32_t>(bytes->size()));
         for (std::size_t i = 0; i < bytes->size(); i += BYTES_IN_WORD) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // UARTs with FIFOs of bytes, and packet UARTs with FIFOs of frames. Sources: shared/hardware.md, part B10;
-// the order of the registers is that in which LinuxCNC's mesa_uart and PktUART components use them. Parity
-// and the idle times between frames are registers without an effect.
+// the order of the registers is derived from LinuxCNC's mesa_uart and PktUART components. Parity and the idle
+// times between frames have no effect.
 #pragma once
 
 #include <deque>
@@ -16,8 +16,8 @@ namespace mw::mesa::board {
 /// The direction of a module: transmitter and receiver are two modules with one line for each instance.
 enum class UartRole : std::uint8_t { TRANSMIT, RECEIVE };
 
-/// Registers: data (four words: an access of word n takes n + 1 bytes, the first one lowest), count in the
-/// FIFO (a write empties it), bit rate, mode.
+/// Registers: data (four words: an access of word n has n + 1 bytes, the first one lowest), count in the FIFO
+/// (a write empties it), bit rate, mode.
 class UartModule final : public Module {
   public:
     UartModule(UartRole role, std::shared_ptr<SerialLines> lines, std::uint32_t clock_hz)
@@ -44,8 +44,8 @@ class UartModule final : public Module {
 };
 
 /// Registers: data (words of four bytes, the first one lowest), frame sizes (transmit: a write sends a frame
-/// of so many bytes; receive: a read returns the size of the next frame), bit rate, mode. The mode reads the
-/// frames that wait in bits 20 to 16; a write with bits 31 and 16 empties the FIFOs.
+/// of this size; receive: a read returns the size of the next frame), bit rate, mode. Bits 20 to 16 of the
+/// mode read the number of waiting frames; a write with bits 31 and 16 empties the FIFOs.
 class PacketUartModule final : public Module {
   public:
     PacketUartModule(UartRole role, std::shared_ptr<SerialLines> lines, std::uint32_t clock_hz)
@@ -58,8 +58,8 @@ class PacketUartModule final : public Module {
   private:
     struct Port {
         std::uint32_t rate = 0, mode = 0;
-        std::deque<std::uint32_t> words;  ///< written and not yet sent, or received and not yet read
-        std::deque<std::uint32_t> sizes;  ///< of the frames that were received
+        std::deque<std::uint32_t> words;  ///< written and not sent, or received and not read
+        std::deque<std::uint32_t> sizes;  ///< sizes of the received frames
     };
     void take(unsigned instance);
     void send_frame(unsigned instance, std::uint32_t bytes);

@@ -8,16 +8,16 @@
 
 namespace mw::mesa::board {
 
-/// The registers and the time at which it bites.
+/// The registers, and the time of the next bite.
 struct Watchdog {
     std::uint32_t timer = 0;                 ///< bit 31: off; else it bites after timer + 1 ticks
-    bool bitten = true;                      ///< as at power-up
-    std::optional<std::int64_t> bites_tick;  ///< of ClockLow; empty: not armed
+    bool bitten = true;                      ///< true as at power-up
+    std::optional<std::int64_t> bites_tick;  ///< tick of ClockLow at which it bites; empty: not armed
 };
 
 constexpr std::uint32_t WATCHDOG_RESET = 0x5A000000;
 
-/// Arms it, or restarts its time. A timer value that was written before takes effect here.
+/// Arms the watchdog, or restarts its time. A new timer value takes effect here.
 void reset_watchdog(Watchdog &watchdog, std::int64_t tick);
 
 /// Registers: timer, status, reset.

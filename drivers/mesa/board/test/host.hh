@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A host for tests: reads and writes registers of a board in the same process.
+// A host for tests that reads and writes registers of a board in the same process.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ struct Host {
                          lbp16::bytes_of_number(value)));
         board.execute(packet.bytes(), time_ns);
     }
-    /// Gives the pins of port 0 to their modules and makes them outputs.
+    /// Assigns the pins of port 0 to their modules and makes them outputs.
     void enable_port0() {
         write(0x1200, 0x1FFFF);
         write(0x1100, 0x03FF);

@@ -60,7 +60,7 @@ TEST(BoardStepgen, StepsReachTheMotorOnlyWhileItsPinsDrive) {
     host.time_ns = 200 * MS;
     host.read(0x0100);
     EXPECT_NEAR(static_cast<double>(host.board.physics().position_steps(0)), 1000, 1);
-    host.write(0x1100, 0x03FE);  // the direction pin is no output any more
+    host.write(0x1100, 0x03FE);  // the direction pin is no longer an output
     host.time_ns = 300 * MS;
     host.read(0x0100);
     EXPECT_NEAR(static_cast<double>(host.board.physics().position_steps(0)), 1000, 1);
@@ -142,7 +142,7 @@ TEST(BoardStepgen, TheOutputsFollowTheirType) {
 
 TEST(BoardStepgen, ATableIsRunThroughWithTheSteps) {
     Host host("7i92-latch");
-    for (const std::uint32_t entry : {0x8U, 0x4U, 0x2U, 0x1U}) {  // the last entry first
+    for (const std::uint32_t entry : {0x8U, 0x4U, 0x2U, 0x1U}) {  // the last entry is written first
         host.write(0x2700, entry);
     }
     host.write(0x2800, 3);
@@ -188,7 +188,7 @@ TEST(BoardWatchdog, AResetInTimeKeepsTheOutputs) {
         host.time_ns += 4 * MS;
     }
     EXPECT_EQ(host.read(0x0D00), 0U);
-    host.write(0x0E00, 0x5A000001);  // not the word
+    host.write(0x0E00, 0x5A000001);  // not the whole word
     host.time_ns += 2 * MS;
     EXPECT_EQ(host.read(0x0D00), 1U);
 }
@@ -269,7 +269,7 @@ TEST(BoardEncoder, TheIndexCanClearTheCounter) {
     EXPECT_EQ(host.read(0x3100) & 0x20U, 0U);
 }
 
-// Compared with a model that goes through every count.
+// Compared with a model that passes every count.
 TEST(BoardEncoder, TheLatchEqualsThatOfASlowModel) {
     std::mt19937 random(77);
     for (int run = 0; run < 20'000; ++run) {
@@ -336,13 +336,13 @@ TEST(BoardPhysics, ASpindleFollowsItsPwmWithALag) {
     host.write(0x1200, 0x1FF);
     host.write(0x1100, 0x1FF);
     host.write(0x4100, 3);                            // 12 bits
-    host.write(0x4000, 0x80000000 | (2048U << 16U));  // half, backwards
+    host.write(0x4000, 0x80000000 | (2048U << 16U));  // half, in the negative direction
     host.time_ns = 2 * S;
     EXPECT_EQ(host.read(0x3000) & 0xFFFFU, 0U) << "not enabled";
     host.write(0x4400, 1);
     host.time_ns = 4 * S;
     host.read(0x3000);
-    // 25 rev/s for 2 s, less the lag.
+    // 25 rev/s for 2 s, minus the lag.
     EXPECT_NEAR(host.board.physics().position_rev(0), -25.0 * (2.0 - 0.1), 0.01);
     EXPECT_NEAR(static_cast<std::int16_t>(host.read(0x3000)), -19000, 2);
 }

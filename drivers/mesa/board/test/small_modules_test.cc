@@ -244,7 +244,7 @@ TEST(BoardInMux, MpgCountersCountTheirInputs) {
     EXPECT_EQ(host.read(0x8400), 0xECU | (0xFBU << 8U)) << "-20 and -5";
 }
 
-// Any registers at any time: nothing crashes, and the description of the firmware stays.
+// Random registers at random times: nothing crashes, and the description of the firmware is unchanged.
 TEST(BoardModels, SurviveRandomRegisters) {
     for (const BuiltInModel &model : built_in_models()) {
         SCOPED_TRACE(model.name);

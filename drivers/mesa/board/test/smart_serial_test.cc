@@ -44,7 +44,7 @@ struct SerialHost : Host {
         }
         return text;
     }
-    /// The names of the process data of a channel in a mode, as its own description has them.
+    /// The names of the process data of a channel in a mode, from its own description.
     std::vector<std::string> names(unsigned channel, std::uint32_t mode) {
         run(0x800U | (1U << channel));
         write(static_cast<std::uint16_t>(0x5C00 + 4 * channel), mode << 24U);

@@ -14,7 +14,7 @@ namespace mw::mesa {
 
 namespace {
 
-/// A bus whose fault is a parameter.
+/// A bus whose fault is shown by a parameter.
 class PinnedBus final : public ForwardingBus {
   public:
     PinnedBus(std::unique_ptr<DirectBus> bus, DirectPins &pins)

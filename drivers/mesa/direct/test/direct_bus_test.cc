@@ -52,7 +52,7 @@ TEST(DirectBus, ASingleFailureKeepsPinsAndIsFollowedByAFullWrite) {
     EXPECT_EQ(rig.bus->cookie(), 0xFFFFFFFFU);
     EXPECT_FALSE(rig.bus->isStopped());
     rig.wire.is_cut = false;
-    rig.simulated.firmware().write(0x2500, 0x123);  // a write that the board has missed
+    rig.simulated.firmware().write(0x2500, 0x123);  // a write that did not reach the board
     rig.cycle();
     EXPECT_FALSE(rig.bus->isFailed());
     EXPECT_EQ(rig.bus->failed_cycles(), 1U);
@@ -94,7 +94,7 @@ TEST(DirectBus, AfterAResetTheSameBoardIsServedAgain) {
     EXPECT_NE(rig.simulated.firmware().read(0x1108), 0U);
 }
 
-/// A card that was exchanged while the traffic was stopped.
+/// A card that was replaced while the traffic was stopped.
 class OtherBoard final : public RegisterAccess {
   public:
     OtherBoard(Wire &wire, Wire &other, const bool &is_other)

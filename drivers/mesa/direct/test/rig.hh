@@ -16,11 +16,11 @@
 
 namespace mw::mesa::test {
 
-/// Faults that a test causes between host and board.
+/// Faults between host and board, set by a test.
 struct Wire {
     board::Board &board;
     bool is_cut = false;                  ///< nothing reaches the board, and reads return `floating`
-    std::uint32_t floating = 0xFFFFFFFF;  ///< what an open line reads as
+    std::uint32_t floating = 0xFFFFFFFF;  ///< value read from an open line
     int error = 0;                        ///< errno of the access; 0: none
 };
 
@@ -80,7 +80,7 @@ class DirectRig {
         driver->declare(pins);
     }
 
-    /// One cycle of a servo thread.
+    /// Runs cycles of a servo thread.
     void cycle(int count = 1) {
         for (int i = 0; i < count; ++i) {
             wait(PERIOD_NS);

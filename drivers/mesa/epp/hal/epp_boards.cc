@@ -18,7 +18,7 @@ namespace mw::mesa {
 
 namespace {
 
-/// The I/O ports of the computer; the process needs CAP_SYS_RAWIO.
+/// Access to the I/O ports of the computer; the process needs CAP_SYS_RAWIO.
 class DirectPort final : public epp::Port {
   public:
     explicit DirectPort(const rtapi_parport_t &port) : port_(port) {}
@@ -66,7 +66,7 @@ EppFacts facts_of(EppCard card) {
              .most_failures = 1}};
 }
 
-/// Under the virtual clock: MILLWRIGHT_MESA=hm2_7i90=7i90, hm2_7i90.1= for a second one.
+/// Under the virtual clock: MILLWRIGHT_MESA=hm2_7i90=7i90, and hm2_7i90.1= for a second board.
 int load_virtual_board(const EppLoad &load, std::size_t i, EppFacts facts) {
     const std::string key = i == 0 ? std::string(facts.module) : fmt::format("{}.{}", facts.module, i);
     const VirtualBoardPlan plan = virtual_board_of(key);

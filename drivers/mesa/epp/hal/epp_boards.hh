@@ -17,13 +17,14 @@ struct EppLoad {
     int comp_id = 0;
     EppCard card = EppCard::CARD_7I90;
     std::span<const int>
-        addresses;  ///< ioaddr=; below 16: the number of a port; the first negative one ends the list
+        addresses;  ///< ioaddr=; below 16: the number of a port; the first negative value ends the list
     std::span<const int> high_addresses;  ///< ioaddr_hi=; 0: detected
     std::span<const int> wide;            ///< epp_wide=
     std::span<char *const> configs;
 };
 
-/// 0, or a negated errno with a message; remove_direct_boards() follows also then. [while loading]
+/// 0, or a negated errno with a message. remove_direct_boards() is also called after a failure. [while
+/// loading]
 MW_HOSTMOT2_API int load_epp_boards(const EppLoad &load);
 
 }  // namespace mw::mesa

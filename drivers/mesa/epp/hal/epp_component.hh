@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The common part of hm2_7i43 and hm2_7i90: their module parameters and how they load. Each includes it once.
+// The common part of hm2_7i43 and hm2_7i90: module parameters and loading. Each component includes it once.
 #pragma once
 
 #include "drivers/mesa/direct/hal/direct_boards.hh"
@@ -10,7 +10,7 @@ namespace {
 
 using mw::mesa::MAX_EPP_BOARDS;
 
-// Without ioaddr= there is one board at the first port of Linux.
+// Without ioaddr= there is one board, at the first port of Linux.
 int ioaddr[MAX_EPP_BOARDS] = {0, -1, -1, -1, -1, -1, -1, -1};
 int ioaddr_hi[MAX_EPP_BOARDS];
 int epp_wide[MAX_EPP_BOARDS] = {1, 1, 1, 1, 1, 1, 1, 1};

@@ -89,7 +89,7 @@ TEST(EppRegisters, ATimeOutStopsTheTrafficUntilAReset) {
     EXPECT_EQ(rig.simulated.firmware().read(0x0D00), 0U);
 }
 
-/// A port that answers nothing, for what the bus itself does.
+/// A port without answers, to test the bus alone.
 class EmptyPort final : public epp::Port {
   public:
     std::uint8_t read(epp::Register) noexcept override { return 0; }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A parallel port in EPP mode with a simulated board behind it. It decodes what reaches the board, byte by
-// byte.
+// A parallel port in EPP mode with a simulated board. It decodes the bytes that reach the board.
 #pragma once
 
 #include <array>
@@ -74,7 +73,7 @@ class SimulatedPort final : public epp::Port {
         address_ = high_next_ ? static_cast<std::uint16_t>((address_ & 0xFFU) | (value << 8U)) : value;
         high_next_ = !high_next_;
     }
-    /// The board counts the address on when bit 15 is set.
+    /// The board increments the address if bit 15 is set.
     void step() noexcept {
         high_next_ = false;
         if ((address_ & 0x8000U) != 0) {

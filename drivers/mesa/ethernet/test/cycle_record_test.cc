@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The record of the last cycles, and the report from it.
+// Tests the record of the last cycles, and its report.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -143,7 +143,7 @@ TEST(CycleReport, NamesAThreadThatIsLate) {
 
 TEST(CycleReport, TellsWhichWayPacketsWereLost) {
     auto cycles = good_cycles(1000);
-    // The request of one cycle does not arrive; the answer of another one does not.
+    // Loses the request of one cycle, and the answer of another one.
     for (const std::size_t lost : {300U, 600U}) {
         cycles[lost].outcome = CycleOutcome::NO_ANSWER;
         cycles[lost].answered_ns = 0;

@@ -18,7 +18,7 @@ using lbp16::Space;
 
 constexpr long PERIOD_NS = 1'000'000;
 
-/// A 7I76E of memory, with a bus that reads two registers at 0x1000 and one at 0x3000.
+/// A 7I76E in memory, with a bus that reads two registers at 0x1000 and one at 0x3000.
 struct Bench {
     MemoryTransport *board = nullptr;
     std::unique_ptr<EthernetBus> bus;
@@ -45,7 +45,7 @@ struct Bench {
         board->advance(PERIOD_NS);
         return bus->read(values, PERIOD_NS);
     }
-    /// Treatment of the packets from now on, by their number from now on.
+    /// Faults of the packets from now on, by number.
     void disturb_requests(std::function<Passage(std::size_t)> passage) {
         board->to_board = [passage = std::move(passage), n = std::size_t{0}](std::size_t) mutable {
             return passage(n++);
@@ -274,7 +274,7 @@ TEST(EthernetBus, ABoardThatWasSwitchedOffIsServedAgainAfterTheReset) {
 TEST(EthernetBus, CyclesDoNotAllocate) {
     Bench bench;
     const std::array<RegisterWrite, 1> writes{{{0x2000, 7}}};
-    // The board in memory allocates for each packet that arrives; with none of them only the bus runs.
+    // The board in memory allocates for each packet that arrives; without packets only the bus runs.
     bench.disturb_requests([](std::size_t) { return Passage{.error = ENOBUFS}; });
     bench.bus->settings.error_limit = 1'000'000;
     const testing::AllocationGuard guard;
@@ -285,8 +285,8 @@ TEST(EthernetBus, CyclesDoNotAllocate) {
     EXPECT_EQ(guard.calls(), 0U);
 }
 
-/// With packets that are lost, late or doubled: a value of a cycle is of this cycle, a write that is lost is
-/// seen in the next good cycle, and the counts agree.
+/// Packets are lost, late or duplicated. The values of a cycle belong to this cycle, a lost write is detected
+/// in the next good cycle, and the counts agree.
 TEST(EthernetBus, KeepsItsPromisesOnABadNetwork) {
     for (const unsigned seed : {1U, 2U, 3U}) {
         std::mt19937 rng(seed);

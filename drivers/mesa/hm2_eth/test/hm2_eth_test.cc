@@ -43,7 +43,7 @@ TEST_F(HmEth, MovesAMotorInVirtualTime) {
     EXPECT_EQ(bench.get("hm2_7i76e.0.packet-error-total"), 0.0);
 }
 
-// Packets take time within a cycle; the time of the board must not run ahead because of them.
+// Packets take time within a cycle; this must not advance the time of the board against the clock.
 TEST_F(HmEth, TheTimeOfAVirtualBoardIsThatOfTheClock) {
     Bench bench{
         "loadrt hostmot2\nloadrt hm2_eth board_ip=10.0.0.1 virtual_board=7i76e config=num_stepgens=1" +

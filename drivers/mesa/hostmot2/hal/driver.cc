@@ -26,7 +26,7 @@ struct HalBoard {
     int comp_id = 0;
     std::string name;
     std::unique_ptr<Board> board;
-    rtapi_u32 *lost_positions = nullptr;  ///< count of HAL
+    rtapi_u32 *lost_positions = nullptr;  ///< counter of HAL
     int dump_line = -1;                   ///< the next line of the state for the log; negative: none
 };
 
@@ -67,14 +67,14 @@ const char *text_of(PositionLoss loss) noexcept {
     return "";
 }
 
-/// Positions are lost: motion switches off before its next command, and the message tells the cause.
+/// Reports lost positions: motion switches off before its next command, and the message contains the cause.
 void report_lost_positions(const HalBoard &board, PositionLoss loss) noexcept {
     __atomic_fetch_add(board.lost_positions, 1, __ATOMIC_RELAXED);
     rtapi_print_msg(RTAPI_MSG_ERR, "hm2/%s: %s Positions are lost: home all joints.", board.name.c_str(),
                     text_of(loss));
 }
 
-/// One message for each event. [servo thread]
+/// Writes one message for each event. [servo thread]
 void report(HalBoard &board) noexcept {
     const BoardEvents events = board.board->take_events();
     const char *name = board.name.c_str();
@@ -97,7 +97,7 @@ void report(HalBoard &board) noexcept {
     }
 }
 
-/// One line of the state in each cycle, so that the log does not overflow. [servo thread]
+/// Writes one line of the state in each cycle, so that the log does not overflow. [servo thread]
 void dump(HalBoard &board) noexcept {
     constexpr std::size_t MAX_LINE = 128;
     char text[MAX_LINE];
@@ -112,7 +112,7 @@ void dump(HalBoard &board) noexcept {
 void read_function(void *self, long period_ns) {
     auto &board = *static_cast<HalBoard *>(self);
     board.board->read(period_ns, rtapi_get_time());
-    // Before functions of this thread use the positions.
+    // Checked before functions of this thread use the positions.
     if (const PositionLoss loss = board.board->take_position_loss(); loss != PositionLoss::NONE) {
         report_lost_positions(board, loss);
     }
@@ -158,7 +158,7 @@ int export_functions(HalBoard &board) {
     return 0;
 }
 
-/// Each line of a message as a message of the board.
+/// Writes each line of a message as a message of the board.
 int refuse(const std::string &name, std::string_view text) {
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());

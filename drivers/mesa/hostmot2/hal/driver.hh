@@ -21,7 +21,7 @@ namespace mw::mesa {
 struct DriverOptions {
     bool has_idrom_log = false, has_module_log = false, has_pin_log = false, has_use_log = false;
     bool is_named_by_serial_number = false;
-    int sserial_baudrate = -1;  ///< of smart serial ports [bit/s]; -1: that of the firmware
+    int sserial_baudrate = -1;  ///< baud rate of smart serial ports [bit/s]; -1: that of the firmware
 };
 
 /// [while loading]
@@ -29,17 +29,17 @@ MW_HOSTMOT2_API void set_driver_options(const DriverOptions &options);
 MW_HOSTMOT2_API const DriverOptions &driver_options() noexcept;
 
 struct BoardRequest {
-    int comp_id = 0;             ///< that owns the pins
-    std::string name;            ///< in HAL, such as hm2_7i76e.0
-    RegisterBus *bus = nullptr;  ///< must stay until unregister_boards()
-    std::string config;          ///< part of config= of this board
+    int comp_id = 0;             ///< component that owns the pins
+    std::string name;            ///< name in HAL, such as hm2_7i76e.0
+    RegisterBus *bus = nullptr;  ///< must exist until unregister_boards()
+    std::string config;          ///< config= of this board
 };
 
 /// Reads the firmware of a board and creates its pins and functions: 0, or a negated errno with a message in
 /// the log. [while loading]
 MW_HOSTMOT2_API int register_board(const BoardRequest &request);
-/// Switches the outputs of all boards of a component off and removes the boards. None of their functions may
-/// run. [while unloading]
+/// Switches the outputs of all boards of a component off and removes the boards. Call it when none of their
+/// functions can run. [while unloading]
 MW_HOSTMOT2_API void unregister_boards(int comp_id);
 
 }  // namespace mw::mesa

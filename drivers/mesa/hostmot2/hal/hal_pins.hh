@@ -8,7 +8,7 @@ namespace mw::mesa {
 
 class HalPins final : public PinSpace {
   public:
-    /// Of the component `comp_id`; names begin with `prefix` and a dot.
+    /// Pins of the component `comp_id`, whose names begin with `prefix` and a dot.
     HalPins(int comp_id, std::string prefix) : comp_id_(comp_id), prefix_(std::move(prefix)) {}
 
     void *const volatile *make(const std::string &name, PinType type, Access access) override;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// hm2_test: boards with faults in the description of their firmware; all are rejected.
+// hm2_test: boards with errors in the description of their firmware; all are rejected.
 #include "drivers/mesa/hostmot2/hal/test_board.hh"
 #include "hal/sdk/component.hh"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The description of a firmware in the log, for debug_idrom=1 and the like.
+// Writes the description of a firmware to the log, for debug_idrom=1 and similar options.
 #pragma once
 
 #include <string>

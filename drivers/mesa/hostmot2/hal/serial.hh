@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The serial interfaces of all boards by their name in HAL, for the functions of hostmot2-serial.h.
+// The serial interfaces of all boards, by name in HAL, for the functions of hostmot2-serial.h.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace mw::mesa {
 
-/// All interfaces, with the names of their boards. They change only while boards are loaded and unloaded.
+/// All interfaces, with the names of their boards. They change only while boards are loaded or unloaded.
 MW_HOSTMOT2_API Ports &known_ports() noexcept;
 /// Registers the interfaces of a board, and logs their names. [while loading]
 void register_ports(const std::string &board, const Ports &ports);
-/// Removes them. [while unloading]
+/// Removes the interfaces of a board. [while unloading]
 void unregister_ports(const std::string &board);
 
 }  // namespace mw::mesa

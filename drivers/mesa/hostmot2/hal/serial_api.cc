@@ -15,7 +15,7 @@ namespace {
 
 using namespace mw::mesa;
 
-/// Null: there is none with this name. [any thread, while no board is loaded or unloaded]
+/// Null if there is none with this name. [any thread, while no board is loaded or unloaded]
 template <class Port>
 Port *find(const std::vector<NamedPort<Port>> &all, const char *name) noexcept {
     const std::string_view wanted = name == nullptr ? "" : name;

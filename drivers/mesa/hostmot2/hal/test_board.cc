@@ -16,7 +16,7 @@ constexpr std::uint16_t IDROM = 0x0400, MODULES = 0x0040, PINS = 0x0200;
 constexpr std::uint32_t LOW_HZ = 2'000'000, HIGH_HZ = 20'000'000;
 constexpr int WIDTH = 24, ODD_WIDTH = 5, MANY_PORTS = 6;
 
-/// The fault of a description. Words are those of the header, in its order.
+/// An error in a description. The words are those of the header, in its order.
 struct Pattern {
     std::uint32_t cookie = COOKIE;
     bool has_name = true;
@@ -44,7 +44,7 @@ constexpr Pattern PATTERNS[] = {
     {.ports = 0, .width_of_all = 0},
 };
 
-/// A board that only works while it is loaded.
+/// A board that works only while it is loaded.
 class TestBus final : public RegisterBus {
   public:
     explicit TestBus(const Pattern &pattern) : pattern_(pattern) {
@@ -99,7 +99,7 @@ class TestBus final : public RegisterBus {
 }  // namespace
 
 int load_test_board(int comp_id, int pattern) {
-    // LinuxCNC's test looks for it among the errors.
+    // LinuxCNC's test searches for this line among the errors.
     rtapi_print_msg(RTAPI_MSG_ERR, "hm2_test: loading HostMot2 test driver with test pattern %d\n", pattern);
     if (pattern < 0 || pattern >= static_cast<int>(std::size(PATTERNS))) {
         rtapi_print_msg(RTAPI_MSG_ERR, "hm2_test: unknown test pattern %d\n", pattern);
@@ -111,7 +111,7 @@ int load_test_board(int comp_id, int pattern) {
         rtapi_print_msg(RTAPI_MSG_ERR, "hm2_test.0: hm2_test fails HM2 registration\n");
         return status;
     }
-    unregister_boards(comp_id);  // every pattern has a fault
+    unregister_boards(comp_id);  // every pattern contains an error
     return -EIO;
 }
 

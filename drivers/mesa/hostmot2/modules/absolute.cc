@@ -10,7 +10,7 @@ namespace {
 constexpr double HZ_PER_KHZ = 1e3;
 constexpr std::uint32_t LAST_TIMER = 4;
 
-/// A rate is clock * n / 2^bits; 0 would be no clock at all.
+/// A rate is clock * n / 2^bits; 0 would mean no clock.
 std::uint32_t rate_of(double khz, unsigned bits, std::uint32_t clock_hz) noexcept {
     const double steps = static_cast<double>(std::uint64_t{1} << bits);
     const double wanted = khz * HZ_PER_KHZ * steps / std::max(clock_hz, 1U);

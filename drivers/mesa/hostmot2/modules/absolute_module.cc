@@ -19,7 +19,7 @@ struct Type {
     const char *name;
     int most_bits;
     double khz;
-    int control, setup, start;  ///< registers; the last one is of all channels
+    int control, setup, start;  ///< registers; the last one is for all channels
     bool lifo;                  ///< all words are read from the first data register
 };
 constexpr Type TYPES[] = {
@@ -33,7 +33,7 @@ constexpr int FANUC_LENGTH = 2;  // register
 
 /// Values of one field.
 struct FieldPins {
-    BitField field, high;  ///< `high`: of an encoder in two parts, else 0 bits
+    BitField field, high;  ///< `high` is the upper part of an encoder in two parts, else 0 bits
     bool set = false, not_set = true;
     double value = 0.0, scale_max = 1.0;
     std::array<bool, MAX_FIELD_BITS> bits{}, bits_not{};
@@ -106,7 +106,7 @@ class AbsoluteEncoders final : public Module {
         }
         return {};
     }
-    /// The driver counts the turns of an encoder that has fewer.
+    /// The driver counts the revolutions of an encoder that does not count them.
     bool isCounting() const noexcept override { return !channels_.empty(); }
     void plan(Registers &registers) override {
         // The busy register is read before the data, because reading these marks them as old.
@@ -114,7 +114,7 @@ class AbsoluteEncoders final : public Module {
         for (Channel &channel : channels_) {
             const int number = channel.number;
             channel.words = (channel.bits + BITS_PER_WORD - 1) / BITS_PER_WORD;
-            // The third word of Fanuc's has the cable error, too.
+            // The third word of a Fanuc encoder also contains the cable error.
             channel.words = type_.gtag == Gtag::FANUC_ABSOLUTE ? int{MAX_WORDS} : channel.words;
             for (int i = 0; i < channel.words; ++i) {
                 const std::uint16_t address = module_.address(type_.lifo ? 0 : i, number);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Fields of the answer of a serial absolute encoder, and an encoder that is one of them.
+// Fields in the answer of a serial absolute encoder, and an encoder in one of them.
 #pragma once
 
 #include <cstdint>
@@ -43,9 +43,9 @@ struct AbsoluteEncoder {
     std::uint64_t last = 0;
     bool known = false;
 };
-/// Takes the value of a field. The first one is a signed number, as LinuxCNC's driver has it; so is each one
-/// with `isMultiTurn`. Without it a jump of more than half of the range is a wrap. The index is where raw
-/// counts pass a multiple of counts_per_rev.
+/// Processes the value of a field. The first value is a signed number, as in LinuxCNC's driver; with
+/// `isMultiTurn` all values are. Otherwise a jump of more than half of the range is a wrap. The index is at
+/// multiples of counts_per_rev of the raw counts.
 void absolute_encoder_read(AbsoluteEncoder &encoder, std::uint64_t value, const BitField &field) noexcept;
 
 }  // namespace mw::mesa

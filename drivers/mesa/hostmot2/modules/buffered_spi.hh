@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Buffered SPI of a board (BSPI): up to 16 devices at one interface, each with a descriptor. A component
-// registers words that are exchanged in each cycle, or writes single ones. Registers: Mesa's register map.
-// All functions belong to the thread of the board, except those that say otherwise.
+// registers words that are exchanged in each cycle, or writes single words. Registers: Mesa's register map.
+// Only the thread of the board may call the functions, unless their comment states otherwise.
 #pragma once
 
 #include <array>
@@ -18,10 +18,10 @@ struct SpiChannel {
     double mhz = 1.0;
     int delay_ns = 0;  ///< between chip select and clock
     bool clock_high_idle = false, is_second_edge = false, sampled_late = false;
-    bool frame_kept = false;  ///< chip select stays after the word
+    bool frame_kept = false;  ///< chip select remains active after the word
     bool echo_off = false;    ///< the answer of the device is not stored
 };
-/// The descriptor of a channel. The clock is the highest that is not above `mhz`.
+/// The descriptor of a channel. The clock is the maximum that does not exceed `mhz`.
 std::uint32_t spi_descriptor(const SpiChannel &channel, std::uint32_t clock_hz) noexcept;
 
 class BufferedSpi {
@@ -45,7 +45,7 @@ class BufferedSpi {
     /// `call` is called before the words of a cycle are sent. [loading]
     void set_write(Callback call, void *data) noexcept { on_write_ = {call, data}; }
 
-    /// For the module of the board:
+    /// --- for the module of the board
     bool take_setup() noexcept;
     std::uint32_t descriptor(std::size_t channel, std::uint32_t clock_hz) const noexcept {
         return spi_descriptor(channels_[channel], clock_hz);

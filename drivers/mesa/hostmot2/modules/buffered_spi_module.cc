@@ -55,7 +55,7 @@ class BufferedSpis final : public Module {
             one.spi.call_write();
             const bool usable = cycle.fresh && cycle.writing;
             if (!usable && one.expected > 0) {
-                one.clear_due = true;  // the words removed with the lost answer are unknown
+                one.clear_due = true;  // the words that were removed with the lost answer are unknown
             }
             one.expected = 0;
             if (usable) {
@@ -79,7 +79,8 @@ class BufferedSpis final : public Module {
         bool clear_due = true;
     };
 
-    /// The words of a cycle are taken together: another number than expected empties the FIFOs.
+    /// Reads the words of a cycle together. If their number differs from the expected one, the FIFOs are
+    /// cleared.
     static void take(const Registers &registers, const Cycle &cycle, Instance &one) noexcept {
         constexpr std::uint32_t RECEIVED_MASK = 0x1F;
         const std::size_t received = registers.value(one.count) & RECEIVED_MASK;

@@ -16,7 +16,7 @@ class ByteQueue {
     std::size_t space() const noexcept { return CAPACITY - size_; }
     void clear() noexcept { size_ = 0; }
 
-    /// Adds all bytes, or none when there is not enough space.
+    /// Adds all bytes, or none if there is not enough space.
     bool push(std::span<const std::uint8_t> bytes) noexcept {
         if (bytes.size() > space()) {
             return false;

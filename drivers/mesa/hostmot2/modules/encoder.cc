@@ -11,7 +11,7 @@ namespace {
 using namespace encoder_bit;
 
 constexpr double SECONDS_PER_MINUTE = 60.0;
-/// Time stamps have 16 bit: a longer time between two edges is not known from them.
+/// Time stamps have 16 bits, so a longer time between two edges cannot be measured.
 constexpr double TIME_STAMPS = 65536.0;
 
 double usable_scale(double scale) noexcept {
@@ -22,13 +22,13 @@ std::int32_t shown(std::int64_t count) noexcept {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint64_t>(count)));
 }
 
-/// The count that a register of 16 bit means, given one less than half of its range away.
+/// The count for a register of 16 bits, from a reference that differs by less than half of its range.
 std::int64_t extended(std::int64_t near, std::uint16_t near_register, std::uint16_t value) noexcept {
     return near + static_cast<std::int16_t>(static_cast<std::uint16_t>(value - near_register));
 }
 
-/// With edges the velocity is their number over the time between the last edges of both readings. Without,
-/// the shaft turns slower than one count in the time since the last edge.
+/// With edges the velocity is their number divided by the time between the last edges of both readings.
+/// Without edges the shaft is slower than one count in the time since the last edge.
 void measure_velocity(EncoderState &state, const EncoderPins &pins, const EncoderReading &reading,
                       std::int64_t change) noexcept {
     const auto edge = static_cast<std::uint16_t>(reading.count >> 16U);
@@ -53,8 +53,8 @@ void measure_velocity(EncoderState &state, const EncoderPins &pins, const Encode
     state.last_edge = edge;
 }
 
-/// Index or probe: the latch holds the count of the event. The event is over when the board has the arm and
-/// its latch enable is clear.
+/// Index or probe: the latch contains the count of the event. The event has occurred when the board has
+/// received the arm and its latch enable is clear.
 void take_latch(EncoderState &state, EncoderPins &pins, const EncoderReading &reading) noexcept {
     state.control = reading.control & 0xFFFFU;
     const bool received = (state.control & ONCE) != 0;
@@ -132,9 +132,9 @@ EncoderControl encoder_control(EncoderState &state, const EncoderPins &pins) noe
     const std::uint32_t has = state.control & SET;
     const bool has_arm = (has & ONCE) != 0;
     if (arm != 0 && has_arm && state.arm_sent && (has & arm) == arm) {
-        return {};  // a write now could arm again after an event that is not read yet
+        return {};  // a write now could arm the latch again after an event that is not read yet
     }
-    // The arm of an earlier request is removed, and seen to be removed, before the next one.
+    // The arm of an earlier request must be removed, and read as removed, before the next one.
     state.arm_sent = arm != 0 && !has_arm;
     const std::uint32_t wanted = settings | (state.arm_sent ? arm : 0U);
     const std::uint32_t clear = state.has_quad_error && !pins.quad_error_enable ? QUAD_ERROR : 0U;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Quadrature counter with time stamps and an index latch. Registers: shared/hardware.md, part B5.
 //
-// The index latch is exact when packets are lost: the driver derives what it writes to the control register
-// from what it last read there. Bit 6 (once) is set only together with the latch enable, so that it shows
-// whether the board has received the arm; bit 4 clears in the board at the index. A lost arm is repeated, and
-// an arm that the board has received is not.
+// The index latch is exact even if packets are lost: the driver derives the value for the control register
+// from its last read value. Bit 6 (once) is set only together with the latch enable, so that it shows whether
+// the board has received the arm; bit 4 clears in the board at the index. A lost arm is repeated, and an arm
+// that the board has received is not.
 #pragma once
 
 #include <cstdint>
@@ -64,7 +64,7 @@ constexpr PinRow<EncoderPins> ENCODER_PINS[] = {
     {"counter-mode", Access::RW, &EncoderPins::counter_mode},
     {"filter", Access::RW, &EncoderPins::filter},
 };
-/// Of firmware with a probe latch.
+/// For firmware with a probe latch.
 constexpr PinRow<EncoderPins> ENCODER_PROBE_PINS[] = {
     {"probe-enable", Access::IO, &EncoderPins::probe_enable},
     {"probe-invert", Access::RW, &EncoderPins::probe_invert},
@@ -76,7 +76,7 @@ struct EncoderReading {
     std::uint32_t control = 0;   ///< high half latch, low half control
     std::uint32_t time_now = 0;  ///< count of time stamps, 16 bit
     double tick_s = 0.5e-6;      ///< one time stamp
-    double elapsed_s = 0.001;    ///< since the last reading that was taken
+    double elapsed_s = 0.001;    ///< time since the last reading
 };
 
 struct EncoderState {
@@ -86,23 +86,23 @@ struct EncoderState {
     bool known = false;
     double since_edge_s = 0.0;  ///< time without an edge
     double velocity = 0.0;      ///< [counts/s]
-    bool isMoving = false;      ///< last_edge is the time of an edge that was seen
-    bool arm_sent = false;      ///< an arm was written for the present request
+    bool isMoving = false;      ///< last_edge is the time of an edge that was detected
+    bool arm_sent = false;      ///< an arm was written for the current request
     std::uint32_t control = 0;  ///< as last read
     bool has_quad_error = false;
 };
 
-/// The counter of the board begins again: the next reading continues at the present count.
+/// The counter of the board starts again: the next reading continues at the current count.
 void encoder_restart(EncoderState &state) noexcept;
-/// Takes a reading: counts, velocity, inputs, and a latch that happened.
+/// Processes a reading: counts, velocity, inputs, and a latch event.
 void encoder_read(EncoderState &state, EncoderPins &pins, const EncoderReading &reading) noexcept;
 /// Whether the control register must be written, and its value.
 struct EncoderControl {
     bool isDue = false;
     std::uint32_t value = 0;
 };
-/// Only in a cycle with a reading: without one it is not known whether the board has an arm. When the result
-/// is due it must be written.
+/// Only in a cycle with a reading, because otherwise it is not known whether the board has an arm. If the
+/// result is due, it must be written.
 EncoderControl encoder_control(EncoderState &state, const EncoderPins &pins) noexcept;
 
 }  // namespace mw::mesa

@@ -55,7 +55,7 @@ class Encoders final : public Module {
         const std::uint8_t version = request.module.descriptor.version & VERSION_MASK;
         has_probe_ = (request.module.descriptor.version & PROBE_VERSION) != 0;
         has_skew_ = muxed_ && version >= FIRST_SKEW_VERSION;
-        // The number of the version does not show whether the register exists; others ignore it.
+        // The version number does not show whether the register exists; other firmware ignores the write.
         has_timer_ = hasDpll(request.assignment);
         // A firmware with both types numbers the muxed encoders after the plain ones, which use the pins of
         // the board.

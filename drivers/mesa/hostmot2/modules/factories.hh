@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One function for each module type makes it for a board.
+// One function for each module type, which creates it for a board.
 #pragma once
 
 #include "drivers/mesa/hostmot2/module.hh"
@@ -23,18 +23,18 @@ std::unique_ptr<Module> make_galvanometers(const ModuleRequest &request);
 std::unique_ptr<Module> make_one_shots(const ModuleRequest &request);
 std::unique_ptr<Module> make_period_meters(const ModuleRequest &request);
 std::unique_ptr<Module> make_absolute_encoders(const ModuleRequest &request);
-/// Of a firmware with transmitters and receivers; null otherwise.
+/// For firmware with transmitters and receivers; null otherwise.
 std::unique_ptr<Module> make_uarts(const ModuleRequest &request);
 std::unique_ptr<Module> make_packet_uarts(const ModuleRequest &request);
 std::unique_ptr<Module> make_bspis(const ModuleRequest &request);
 
-/// A module that is used; null: the firmware does not have it.
+/// A used module; null if the firmware does not have it.
 const UsedModule *find_module(const Assignment &assignment, Gtag gtag) noexcept;
 
 /// Access of a user to any register (enable_raw in config=).
 std::unique_ptr<Module> make_raw();
 
-/// Whether the firmware has a phase-locked loop that is used, so that modules have a timer-number pin.
+/// True if the firmware has a used phase-locked loop, so that modules have a timer-number pin.
 bool hasDpll(const Assignment &assignment) noexcept;
 
 }  // namespace mw::mesa

@@ -28,7 +28,7 @@ std::unexpected<Error> refuse(std::string_view format, std::size_t at, std::stri
                 std::string(why));
 }
 
-/// The modifiers and the type from `at` on, after the number of bits.
+/// Parses the modifiers and the type, from `at`, after the number of bits.
 Result<> read_type(BitField &field, std::string_view format, std::size_t &at) {
     for (; at < format.size() && (format[at] == 'g' || format[at] == 'm'); ++at) {
         field.gray = field.gray || format[at] == 'g';

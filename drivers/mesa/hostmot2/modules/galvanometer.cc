@@ -9,7 +9,8 @@ namespace mw::mesa {
 namespace {
 
 constexpr double FULL_SCALE = 2147483647.0;
-/// Position changes by velocity each 256 clocks, velocity by acceleration each 4096 clocks.
+/// The position is updated from the velocity every 256 clocks, the velocity from the acceleration every 4096
+/// clocks.
 constexpr double CLOCKS_OF_POSITION = 256.0, CLOCKS_OF_VELOCITY = 4096.0;
 constexpr std::uint32_t OVERFLOW_POS_X = 1U << 6U, OVERFLOW_POS_Y = 1U << 7U, OVERFLOW_VEL_X = 1U << 8U,
                         OVERFLOW_VEL_Y = 1U << 9U;

@@ -26,17 +26,18 @@ struct GalvanometerWords {
 
     bool operator==(const GalvanometerWords &) const = default;
 };
-/// The words of an axis; values outside the range of a register are limited, and those that are not finite 0.
+/// The words of an axis. Values outside the range of a register are limited; values that are not finite
+/// become 0.
 GalvanometerWords galvanometer_words(const GalvanometerPins &pins, std::uint32_t clock_hz) noexcept;
-/// Takes position and velocity of an axis.
+/// Reads position and velocity of an axis.
 void galvanometer_read(GalvanometerPins &pins, const GalvanometerWords &words,
                        std::uint32_t clock_hz) noexcept;
 
-/// The mode register. While the interface is not enabled it sends positions, and clears the overflows.
+/// The mode register. While the interface is not enabled it sends positions, and resets the overflows.
 std::uint32_t galvanometer_mode(const GalvanometerPins &x, const GalvanometerPins &y, bool enabled) noexcept;
 /// The words that are sent in command mode.
 std::uint32_t galvanometer_command(const GalvanometerPins &x, const GalvanometerPins &y) noexcept;
-/// Takes the overflows from the mode register.
+/// Reads the overflows from the mode register.
 void galvanometer_overflows(GalvanometerPins &x, GalvanometerPins &y, std::uint32_t mode_register) noexcept;
 
 }  // namespace mw::mesa

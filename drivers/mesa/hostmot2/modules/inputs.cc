@@ -30,7 +30,7 @@ std::uint32_t inputs_control(InputsPins &pins, std::uint32_t clock_hz) noexcept 
     pins.fast_scans = std::min(pins.fast_scans, MOST_FAST);
     pins.slow_scans = std::min(pins.slow_scans, MOST_SLOW);
     const std::uint32_t ratio = std::clamp(fastest / pins.scan_rate, 1U, DIVISORS);
-    // Inputs are active low on the board; the inverted value is the one that users expect.
+    // Inputs are active low on the board; users expect the inverted value.
     return INVERT | ((ratio - 1) << DIVISOR_SHIFT) | (pins.fast_scans << FAST_SHIFT) |
            (pins.slow_scans << SLOW_SHIFT);
 }

@@ -29,7 +29,7 @@ constexpr PinRow<InputsPins> INPUTS_PARAMS[] = {
     {"scan_width", Access::RO, &InputsPins::scan_width},
 };
 
-/// The hand wheels as they were last read.
+/// The last read counts of the hand wheels.
 struct InputsState {
     std::uint32_t counters = 0;
     bool known = false;
@@ -44,9 +44,9 @@ std::uint32_t inputs_filter(const InputsPins &pins) noexcept;
 /// A byte for each hand wheel: 1 counts each edge.
 std::uint32_t inputs_wheel_modes(const InputsPins &pins) noexcept;
 
-/// Takes the registers of filtered and raw inputs.
+/// Processes the registers of filtered and raw inputs.
 void inputs_show(InputsPins &pins, std::uint32_t filtered, std::uint32_t raw) noexcept;
-/// Takes the register of four 8-bit counters. A wheel may make 127 counts in a cycle.
+/// Processes the register of four 8-bit counters. A wheel may make up to 127 counts in a cycle.
 void inputs_count(InputsState &state, InputsPins &pins, std::uint32_t counters) noexcept;
 
 }  // namespace mw::mesa

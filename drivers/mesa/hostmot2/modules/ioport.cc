@@ -20,7 +20,7 @@ constexpr PinRow<GpioPins> GENERAL_PINS[] = {
     {"out", Access::IN, &GpioPins::out},
     {"is_output", Access::RW, &GpioPins::is_output},
 };
-/// Of general pins, and of outputs of modules.
+/// For general pins, and for outputs of modules.
 constexpr PinRow<GpioPins> DRIVE_PINS[] = {
     {"invert_output", Access::RW, &GpioPins::invert_output},
     {"is_opendrain", Access::RW, &GpioPins::is_opendrain},
@@ -159,7 +159,7 @@ void IoPorts::declare(PinSpace &space) {
         if (other.empty()) {
             continue;
         }
-        // A function on several pins has the number of the pin among them in its names.
+        // If a function has several pins, its names contain the number of the pin among them.
         const auto same = [&](const UsedPin &pin) { return output_name(pin) == other; };
         const auto all = std::ranges::count_if(used_, same);
         const auto before =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The pins of a board as general inputs and outputs, and which of them the modules have. Registers:
+// The pins of a board as general inputs and outputs, and the pins used by modules. Registers:
 // shared/hardware.md, part B3.
 #pragma once
 
@@ -22,7 +22,7 @@ struct PortWords {
     bool operator==(const PortWords &) const = default;
 };
 
-/// The words of a port from its pins. `used` and `pins` are of the port, at most 32.
+/// The words of a port from its pins. `used` and `pins` belong to the port, at most 32.
 PortWords port_words(std::span<const UsedPin> used, std::span<const GpioPins> pins) noexcept;
 
 class IoPorts final : public Module {
@@ -34,8 +34,8 @@ class IoPorts final : public Module {
     void read(const Registers &registers, const Cycle &cycle) noexcept override;
     void write(Registers &registers, const Cycle &cycle) noexcept override;
 
-    /// Read and write the general pins at once, for read_gpio and write_gpio. They have separate values, so
-    /// that they do not disturb the thread of the cycle. [one realtime thread, after declare()]
+    /// Read and write the general pins immediately, for read_gpio and write_gpio. They use separate values,
+    /// so they do not affect the thread of the cycle. [one realtime thread, after declare()]
     void read_immediately(RegisterBus &bus) noexcept;
     void write_immediately(RegisterBus &bus) noexcept;
 
@@ -61,7 +61,7 @@ class IoPorts final : public Module {
     ReadHandle data_;
 };
 
-/// The name of an output of a module in HAL, such as "stepgen.00.step"; empty: it has none.
+/// The name of an output of a module in HAL, such as "stepgen.00.step"; empty if it has none.
 std::string output_name(const UsedPin &pin);
 
 }  // namespace mw::mesa

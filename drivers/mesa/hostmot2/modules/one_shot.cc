@@ -9,7 +9,7 @@ namespace {
 
 constexpr unsigned SECOND_TIMER = 16;
 
-/// A value that is not above 0, or not a number, is 0.
+/// A value that is not above 0, or not a number, becomes 0.
 std::uint32_t limited(double value, double most) noexcept {
     return value > 0.0 ? static_cast<std::uint32_t>(std::min(value, most)) : 0U;
 }

@@ -9,7 +9,7 @@
 
 namespace mw::mesa {
 
-/// Sources of a trigger; larger numbers are none.
+/// Sources of a trigger; larger numbers mean no source.
 enum OneShotTrigger : std::uint32_t { OFF, SOFTWARE, INPUT, DPLL_TIMER, RATE_GENERATOR, TIMER_1, TIMER_2 };
 
 struct OneShotPins {
@@ -58,7 +58,7 @@ std::uint32_t one_shot_filter(double ms, std::uint32_t clock_hz) noexcept;
 /// The register of the rate generator: clock * n / 2^32.
 std::uint32_t one_shot_rate(double hz, std::uint32_t clock_hz) noexcept;
 std::uint32_t one_shot_control(const OneShotPins &pins) noexcept;
-/// Takes the control register: outputs and inputs.
+/// Reads outputs and inputs from the control register.
 void one_shot_read(OneShotPins &pins, std::uint32_t control_register) noexcept;
 
 }  // namespace mw::mesa

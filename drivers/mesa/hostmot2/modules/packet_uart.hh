@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Packet UARTs of a board: frames of bytes with pauses between them, such as those of Modbus. The driver
 // moves frames with the packets of its cycle, as with UARTs; a received frame takes three cycles and one for
-// each 32 bytes. Registers: Mesa's register map. All functions belong to the thread of the board, except
+// each 32 bytes. Registers: Mesa's register map. Only the thread of the board may call the functions, except
 // setup().
 #pragma once
 
@@ -34,11 +34,11 @@ class PacketUart {
 
     /// The sizes of received frames, the oldest first.
     std::span<const std::uint16_t> frame_sizes() const noexcept { return {sizes_.data(), frames_}; }
-    /// Takes bytes of received frames. They end where the oldest frame ends, and the rest of a frame of which
-    /// a part is taken remains.
+    /// Removes bytes of received frames, at most up to the end of the oldest frame. The rest of a partly read
+    /// frame remains.
     std::size_t receive(std::span<std::uint8_t> bytes) noexcept;
 
-    /// The mode registers as they were last read, with the frames that the driver holds.
+    /// The last read mode registers, with the frames stored in the driver.
     std::uint32_t rx_status() const noexcept;
     std::uint32_t tx_status() const noexcept { return tx_mode_; }
     /// Frames lost to failed packets and errors on the line.
@@ -46,11 +46,11 @@ class PacketUart {
 
     /// Empties all FIFOs and queues.
     void reset() noexcept;
-    /// Of the firmware; the clock of the bit rate [Hz].
+    /// Clock of the bit rate from the firmware [Hz].
     std::uint32_t clock_hz() const noexcept { return clock_hz_; }
     int version() const noexcept { return version_; }
 
-    /// For the module of the board:
+    /// --- for the module of the board
     void describe(std::uint32_t clock_hz, int version) noexcept {
         clock_hz_ = clock_hz;
         version_ = version;
@@ -58,13 +58,13 @@ class PacketUart {
     bool take_reset() noexcept;
     bool take_settings(Settings &settings) noexcept;
     void show_modes(std::uint32_t tx_mode, std::uint32_t rx_mode) noexcept;
-    /// The next frame to send; 0 bytes: there is none. It must fit.
+    /// The next frame to send; 0 bytes if there is none. It must fit.
     std::size_t next_frame(std::span<std::uint8_t> bytes) noexcept;
     bool hasSpace() const noexcept;
     void begin_frame(std::size_t size) noexcept;
     void take(std::span<const std::uint8_t> bytes) noexcept;
     std::size_t missing() const noexcept { return missing_; }
-    /// Forgets the frame that is being received.
+    /// Discards the frame that is being received.
     void drop_frame() noexcept;
     void count_failure() noexcept { ++failures_; }
 

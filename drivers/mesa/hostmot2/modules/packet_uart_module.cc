@@ -63,7 +63,7 @@ class PacketUarts final : public Module {
             one.frames = (registers.value(one.rx_state) & packet_uart_bit::FRAMES) >> 16U;
             take(registers, one);
             if (cycle.has_lost_write && one.sending) {
-                // Words of a frame may be missing in the board, which would mix with the next frame.
+                // Words of a frame may be missing in the board, and would be mixed with the next frame.
                 one.tx_clear_due = true;
                 one.frame_left = 0;
                 one.uart.count_failure();
@@ -78,7 +78,7 @@ class PacketUarts final : public Module {
         for (Instance &one : instances_) {
             const bool usable = cycle.fresh && cycle.writing;
             if (!usable && one.step != Step::NONE) {
-                one.rx_clear_due = true;  // the words removed with the lost answer are unknown
+                one.rx_clear_due = true;  // the words that were removed with the lost answer are unknown
                 one.uart.drop_frame();
             }
             one.step = Step::NONE;
@@ -157,7 +157,8 @@ class PacketUarts final : public Module {
         }
         one.tx_clear_due = one.rx_clear_due = false;
     }
-    /// The words of a frame, in as many cycles as they need, and after the last its size, which starts it.
+    /// Sends the words of a frame, in as many cycles as needed, and then its size, which starts the
+    /// transmission.
     static void send(Registers &registers, Instance &one) noexcept {
         if (one.frame_left == 0) {
             one.frame_size = one.frame_left = one.uart.next_frame(one.frame);

@@ -18,8 +18,8 @@ std::uint32_t averages_of(const PeriodMeterPins &pins) noexcept {
 
 void period_meter_read(PeriodMeterPins &pins, const PeriodReading &reading) noexcept {
     constexpr std::uint32_t VALID = 2, INPUT = 4;
-    // The counters stop one clock before the edge, and hold the sum of all averaged periods. The number of
-    // averages is the one that the board has.
+    // The counters stop one clock before the edge, and contain the sum of all averaged periods. The number of
+    // averages is that of the board.
     const double averages = ((reading.mode >> 4U) & 0xFFFU) + 1.0;
     const double period = (reading.period + 1.0) / averages, width = (reading.width + 1.0) / averages;
     pins.input_status = (reading.mode & INPUT) != 0;

@@ -13,7 +13,7 @@ struct PeriodMeterPins {
     double period_us = 0.0, width_us = 0.0, frequency = 0.0;  ///< [us], [us], [Hz]; 0 without a valid signal
     double duty_cycle = 0.0;  ///< width / period * scale + offset; the offset without a valid signal
     double duty_cycle_scale = 1.0, duty_cycle_offset = 0.0;
-    std::uint32_t averages = 1;      ///< periods that are measured together, 1 to 4096
+    std::uint32_t averages = 1;      ///< number of periods that are measured together, 1 to 4096
     double minimum_frequency = 1.0;  ///< [Hz]; a slower signal is not valid
     double filter_us = 0.1;          ///< shorter pulses are ignored
     bool valid = false, inverted = false, input_status = false;

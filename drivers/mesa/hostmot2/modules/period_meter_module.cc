@@ -17,7 +17,7 @@ class PeriodMeters final : public Module {
 
     void plan(Registers &registers) override {
         const auto count = static_cast<std::uint16_t>(instances_.size());
-        // Reading the mode holds period and width of the same pulse.
+        // Reading the mode register latches period and width of the same pulse.
         modes_ = registers.read({module_.address(MODE), count}, ReadOrder::INPUT);
         periods_ = registers.read({module_.address(PERIOD), count}, ReadOrder::INPUT);
         widths_ = registers.read({module_.address(WIDTH), count}, ReadOrder::INPUT);

@@ -25,7 +25,7 @@ constexpr PinRow<PwmPins> PWM_PINS[] = {
     {"output-type", Access::RW, &PwmPins::output_type},
     {"offset-mode", Access::RW, &PwmPins::offset_mode},
 };
-/// Of firmware that spreads the fraction of a value over several periods.
+/// For firmware that spreads the fraction of a value over several periods.
 constexpr PinRow<PwmPins> PWM_DITHER_PINS[] = {
     {"dither", Access::RW, &PwmPins::dither},
 };

@@ -33,7 +33,7 @@ Crossing crossing_of(std::int64_t before, std::int64_t after) noexcept {
     return {true, (after > before ? to : from) * (std::int64_t{1} << REV_BITS)};
 }
 
-/// The turns with which the position is nearest to that of the last session.
+/// The revolutions with which the position is nearest to that of the last session.
 void place(ResolverState &state, const ResolverPins &pins) noexcept {
     const double scale = usable(pins.scale) == 0.0 ? 1.0 : pins.scale;
     constexpr double MOST_TURNS = 1e6;
@@ -49,7 +49,7 @@ void take_index(ResolverState &state, ResolverPins &pins, std::int64_t before) n
     if (!pins.index_enable || !crossing.present) {
         return;
     }
-    // With several cycles per revolution of the shaft each pseudo-index is one in `index_divisor`.
+    // With several cycles per revolution of the shaft, only one of `index_divisor` pseudo-indexes is used.
     const auto divisor = static_cast<std::int64_t>(std::max(pins.index_divisor, 1U));
     if ((crossing.at >> REV_BITS) % divisor == 0) {
         state.zero = crossing.at;

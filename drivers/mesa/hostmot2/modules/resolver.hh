@@ -53,20 +53,20 @@ struct ResolverState {
     std::int64_t zero = 0;   ///< total at which position and count are 0
     std::uint32_t last = 0;
     bool known = false;
-    bool placed = false;  ///< the position file has been taken
+    bool placed = false;  ///< the position file was applied
 };
 
-/// Takes a reading. With an error position and velocity are shown, too, but are not valid: Mesa's register
-/// map and LinuxCNC's driver disagree on the polarity of the error, so that nothing depends on it.
+/// Processes a reading. With an error, position and velocity are shown but not valid. Mesa's register map and
+/// LinuxCNC's driver disagree on the polarity of the error, so nothing else depends on it.
 void resolver_read(ResolverState &state, ResolverPins &pins, const ResolverReading &reading) noexcept;
 
-/// The choices of excitation: 10, 5 and 2.5 kHz with a clock of 50 MHz.
+/// The possible excitations: 10, 5 and 2.5 kHz with a clock of 50 MHz.
 struct Excitation {
     double khz = -1.0;          ///< value of the parameter; negative: that of the board
     std::uint32_t command = 0;  ///< for the command register; 0: none
     std::uint32_t divisor = 5000;
 };
-/// The nearest choice to a parameter.
+/// The excitation nearest to a parameter.
 Excitation resolver_excitation(double khz) noexcept;
 
 }  // namespace mw::mesa

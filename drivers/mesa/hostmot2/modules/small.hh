@@ -14,10 +14,10 @@ std::uint32_t led_word(std::span<const bool> lit) noexcept;
 /// The rate register of solid state relays: enable, and the divisor of the drive frequency.
 std::uint32_t ssr_rate(std::uint32_t frequency_hz, std::uint32_t clock_hz) noexcept;
 
-/// Figures of the phase-locked loop.
+/// Properties of the phase-locked loop.
 constexpr int DPLL_DDS_BITS = 42;
 std::uint32_t dpll_base_rate(double base_hz, std::uint32_t prescale, std::uint32_t clock_hz) noexcept;
-/// A timer: the board acts `offset_us` after its sync moment (negative: before) [16 bit].
+/// A timer: the board acts `offset_us` after its sync time (negative: before) [16 bits].
 std::uint32_t dpll_timer(double offset_us, double period_s) noexcept;
 /// [us]
 double dpll_phase_error_us(std::uint32_t phase_register, double period_s) noexcept;

@@ -162,8 +162,8 @@ class PortDiscovery {
     int port_, most_bits_;
 };
 
-/// While the cards are found, the pins of smart serial belong to their module and all others are inputs.
-/// `isOn` false: all are inputs.
+/// While the cards are searched, the pins of smart serial belong to their module and all other pins are
+/// inputs. `isOn` false: all pins are inputs.
 enum class PinUse : std::uint8_t { NONE, SERIAL };
 Result<> set_pins(RegisterBus &bus, const Idrom &idrom, const Assignment &assignment, PinUse use) {
     const auto ports = std::ranges::find(assignment.modules, Gtag::IO_PORT,
@@ -200,7 +200,7 @@ bool hasCard(const std::vector<FoundPort> &ports, const UsedPin &pin) {
 }  // namespace
 
 int user_registers(const UsedModule &module) noexcept {
-    // Version B reports how many it has; the first type has 3.
+    // Version B reports its number; the first type has 3.
     return module.descriptor.gtag == Gtag::SMART_SERIAL_B
                ? std::max(module.descriptor.registers - COMMAND_REGISTERS, 3)
                : 3;

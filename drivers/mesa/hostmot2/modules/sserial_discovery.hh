@@ -11,8 +11,8 @@ namespace mw::mesa {
 int user_registers(const UsedModule &module) noexcept;
 
 /// Fills `assignment.serial_ports`. Pins of channels without a card become GPIO, with warnings about unusable
-/// cards. Only the transmit pins of smart serial are outputs meanwhile; afterwards all pins are inputs. An
-/// error of the bus is returned; a port or card that does not answer is a warning. [while loading]
+/// cards. In this time only the transmit pins of smart serial are outputs; afterwards all pins are inputs. An
+/// error of the bus is returned; a port or card that does not answer is only a warning. [while loading]
 Result<> discover_sserial(RegisterBus &bus, const Idrom &idrom, const Config &config, Assignment &assignment);
 
 }  // namespace mw::mesa

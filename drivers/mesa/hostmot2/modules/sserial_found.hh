@@ -13,7 +13,7 @@ namespace mw::mesa {
 /// A parameter of a card and its value at the time of the discovery.
 struct FoundParameter {
     DataRecord record;
-    std::uint64_t value = 0;  ///< the bits in the card
+    std::uint64_t value = 0;  ///< value as bits in the card
 };
 
 /// A card on a channel.

@@ -64,7 +64,7 @@ int words_of(int bits) noexcept {
 struct SerialCard {
     int channel = 0;
     std::uint8_t mode = 0;
-    std::string name;  ///< of its pins: 7i76.0.0
+    std::string name;  ///< prefix of its pins: 7i76.0.0
     int input_words = 0, output_words = 0;
     SserialCardValues values;
     std::vector<SserialParameter> parameters;
@@ -83,7 +83,7 @@ struct SerialPort {
     SserialPortPins pins;
     SserialPortControl control;
     SserialWriteStep step;  ///< of the parameter that is written
-    bool doubtful = false;  ///< the last command may be lost
+    bool doubtful = false;  ///< the last command may have been lost
     std::vector<SerialCard> cards;
     ReadHandle command_read, data_read, status_read;
     std::array<ReadHandle, MAX_WORDS> user_reads;
@@ -118,7 +118,7 @@ class SmartSerial final : public Module {
                     card.user_writes[static_cast<std::size_t>(i)] = write(USER + i);
                 }
             }
-            // After the registers that it uses.
+            // Written after the registers that the command uses.
             port.command_write =
                 registers.write(address(port, COMMAND, 0), WriteOrder::SMART_SERIAL, Send::REQUESTED);
         }
@@ -321,7 +321,7 @@ class SmartSerial final : public Module {
             return std::ranges::any_of(card.parameters, &SserialParameter::isChanged);
         });
     }
-    /// One step of a parameter in each cycle. Steps that may be lost are repeated.
+    /// Executes one step of a parameter in each cycle. A step that may have been lost is repeated.
     static void write_parameters(Registers &registers, SerialPort &port) noexcept {
         const bool first = port.step.number == 0;
         if (first && port.doubtful) {
@@ -343,7 +343,7 @@ class SmartSerial final : public Module {
         const bool first = port.step.number == 0;
         if (!first && !port.doubtful && (card.status_now & FAULTS) != 0) {
             card.status = card.status_now;
-            parameter.known = port.step.value;  // not tried again until it changes
+            parameter.known = port.step.value;  // not written again until it changes
             port.step = {};
             port.control.finish_setup(port.pins, 1U << static_cast<unsigned>(card.channel));
             return;
@@ -351,7 +351,7 @@ class SmartSerial final : public Module {
         const SserialWriteStep last = port.step;
         port.step = port.doubtful ? last : next_step(parameter, last);
         if (port.step.number == 0) {
-            parameter.known = last.value;  // the next cycle takes the next parameter
+            parameter.known = last.value;  // the next cycle writes the next parameter
             return;
         }
         registers.request(card.mode_write, port.step.status);

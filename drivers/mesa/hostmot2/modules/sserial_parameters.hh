@@ -31,7 +31,7 @@ struct SserialParameter {
     bool isChanged() const noexcept { return access == Access::RW && wanted() != known; }
 };
 
-/// The parameter of a card; empty: its type has no pin. [while loading]
+/// The parameter of a card; empty if its type has no pin. [while loading]
 std::optional<SserialParameter> make_parameter(const FoundParameter &found);
 
 /// One exchange in set-up: values of the status and user registers of the channel.
@@ -42,8 +42,8 @@ struct SserialWriteStep {
     std::uint32_t status = 0;
     std::array<std::uint32_t, WORDS> words{};
 };
-/// The step after `last`; number 0: the card has the value of `last`. Non-volatile memory is opened before
-/// and closed after. [servo thread]
+/// The step after `last`; number 0: the card has the value of `last`. Non-volatile memory is opened before a
+/// write and closed after it. [servo thread]
 SserialWriteStep next_step(const SserialParameter &parameter, const SserialWriteStep &last) noexcept;
 
 }  // namespace mw::mesa

@@ -13,17 +13,18 @@ constexpr std::uint32_t DO_IT = 0x1000, STOP = 0x800, START_NORMAL = 0x900, STAR
 constexpr std::uint32_t COMMAND_MASK = 0x7FFFFFFF;
 /// A card switches its outputs off when it receives nothing for about 10 ms.
 constexpr double OUTPUTS_OFF_S = 0.1;
-/// The longest time for a start, and between two attempts.
+/// Maximum time of a start, and between two attempts.
 constexpr double START_LIMIT_S = 0.25, RETRY_S = 0.25;
-/// After this time without a write the cards have turned their outputs off and are started again.
+/// After this time without a write the cards have turned their outputs off, so they are started again.
 constexpr double LONGEST_GAP_S = 0.01;
-/// A start whose packet was lost shows as failures of the first exchanges, which start the cards again.
+/// A start whose packet was lost causes failures of the first exchanges, after which the cards are started
+/// again.
 constexpr int FIRST_EXCHANGES = 10, MOST_SILENT_STARTS = 5;
-/// The pins of the port become outputs with the first write; a start must come later.
+/// The pins of the port become outputs with the first write; the start must come later.
 constexpr double SETTLE_S = 0.01;
-/// Exchanges in a row that were late, or reads of one exchange that saw it in work, before they are a fault.
+/// Number of consecutive late exchanges, or of reads during one exchange, that are a fault.
 constexpr int LATE_STREAK = 3, LATE_READS = 2;
-/// A port without a late exchange for this time may report the next one.
+/// A late exchange is reported again after this time without late exchanges.
 constexpr double QUIET_S = 10.0;
 
 }  // namespace
@@ -56,7 +57,7 @@ SserialCommand SserialPortControl::start(SserialPortPins &pins) noexcept {
 
 void SserialPortControl::stop_by_faults(SserialPortPins &pins, SserialEvents::Type type,
                                         std::uint32_t channels) noexcept {
-    // One message for each burst: attempts that fail belong to the same one.
+    // One message for each burst; failed attempts belong to the same burst.
     if (!recovering_) {
         event_ = {.type = type, .channels = channels, .shortest_ns = late_shortest_ns_};
         stopped_s_ = 0.0;
@@ -79,13 +80,13 @@ void SserialPortControl::note_fault(SserialPortPins &pins, std::uint32_t channel
 void SserialPortControl::note_late(SserialPortPins &pins, const SserialReading &reading) noexcept {
     const std::int64_t elapsed_ns = reading.now_ns - sent_ns_;
     const auto period_ns = static_cast<std::int64_t>(reading.period_s * 1e9);
-    // The thread was late with its write and read soon after it: the exchange is not too long.
+    // The thread wrote late and read soon afterwards, so the exchange is not too long.
     if (elapsed_ns < period_ns / 2) {
         return;
     }
     late_streak_ += late_reads_ == 0 ? 1 : 0;
     ++late_reads_;
-    // A packet that was late looks alike. An exchange that is too long is late each time.
+    // A late packet has the same effect. An exchange that is too long is late each time.
     if (late_streak_ < LATE_STREAK && late_reads_ < LATE_READS) {
         return;
     }
@@ -164,7 +165,7 @@ std::uint32_t SserialPortControl::read(SserialPortPins &pins, const SserialReadi
 SserialCommand SserialPortControl::write_stopping(SserialPortPins &pins, double period_s) noexcept {
     in_state_s_ += period_s;
     if (!stop_sent_) {
-        // A processor that is still busy may hang: it is stopped, too.
+        // A processor that is still busy may hang, so it is stopped, too.
         stop_sent_ = true;
         return send(STOP | CHANNELS);
     }
@@ -174,7 +175,7 @@ SserialCommand SserialPortControl::write_stopping(SserialPortPins &pins, double 
 
 SserialCommand SserialPortControl::write_idle(SserialPortPins &pins, const Moment &moment) noexcept {
     in_state_s_ += moment.period_s;
-    // Cards may run, from before a fault of the bus or of another program.
+    // Cards may be running since a fault of the bus or from another program.
     if (!stop_sent_) {
         stop_sent_ = true;
         return send(STOP | CHANNELS);
@@ -233,7 +234,7 @@ SserialCommand SserialPortControl::write(SserialPortPins &pins, const Moment &mo
         if (!stop_due) {
             return {};
         }
-        // The operator stops the port: this ends a fault, and outputs follow their pins after the next start.
+        // The operator stops the port. This ends a fault, and outputs follow their pins after the next start.
         enter(pins, SserialState::IDLE);
         stop_sent_ = true;
         recovering_ = pins.fault = false;

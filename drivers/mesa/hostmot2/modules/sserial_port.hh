@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The state of a smart serial port: it starts the exchange with its cards, requests one exchange in each
-// cycle, counts faults, and starts again by itself after too many. Pure functions without registers.
-// Source: shared/hardware.md, parts B9 and G.
+// The state of a smart serial port. It starts the exchange with its cards, requests one exchange in each
+// cycle, counts faults, and restarts after too many faults. Functions without access to registers. Source:
+// shared/hardware.md, parts B9 and G.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ enum class SserialState : std::uint32_t {
 
 struct SserialPortPins {
     bool run = true;
-    bool fault = false;  ///< stopped by faults: inputs are old and outputs are off
+    bool fault = false;  ///< stopped after faults: inputs are old and outputs are off
     std::uint32_t fault_count = 0, port_state = 0, port_state2 = 0, port_state3 = 0;
     std::uint32_t fault_inc = 10, fault_dec = 1, fault_lim = 200;
 };
@@ -47,7 +47,7 @@ struct SserialReading {
     double period_s = 0.001;
 };
 
-/// Events of a port; one message for each burst.
+/// Events of a port, with one message for each burst.
 struct SserialEvents {
     enum class Type : std::uint8_t {
         NONE,
@@ -55,11 +55,11 @@ struct SserialEvents {
         FAULT,      ///< too many faults: stopped
         NO_START,   ///< the cards do not start
         NO_SETUP,   ///< parameters could not be written
-        RECOVERED,  ///< runs again
+        RECOVERED,  ///< the port runs again
     } type = Type::NONE;
-    std::uint32_t channels = 0;                    ///< that failed
-    std::int64_t shortest_ns = 0, longest_ns = 0;  ///< limits of the time of an exchange; 0: not known
-    std::int64_t stopped_ns = 0;                   ///< how long the port was stopped
+    std::uint32_t channels = 0;                    ///< channels that failed
+    std::int64_t shortest_ns = 0, longest_ns = 0;  ///< minimum and maximum time of an exchange; 0: not known
+    std::int64_t stopped_ns = 0;                   ///< duration of the stop
     std::int64_t period_ns = 0;
 };
 
@@ -68,8 +68,8 @@ struct SserialCommand {
     bool isDue = false;
     std::uint32_t command = 0;
     bool is_setup_step = false;  ///< the cards are in set-up: setup_step() or finish_setup() must follow
-    bool has_modes = false;      ///< with the modes of the cards
-    bool has_data = false;       ///< with their outputs
+    bool has_modes = false;      ///< contains the modes of the cards
+    bool has_data = false;       ///< contains the outputs of the cards
 };
 
 /// State of the outputs with the next command.
@@ -79,7 +79,7 @@ class SserialPortControl {
   public:
     explicit SserialPortControl(std::uint32_t channels) noexcept : channels_(channels) {}
 
-    /// Evaluates a fresh read; the mask of channels whose words are new. [servo thread]
+    /// Processes a new read; returns the mask of channels with new words. [servo thread]
     std::uint32_t read(SserialPortPins &pins, const SserialReading &reading) noexcept;
     /// Selects the command of this cycle. `writing` false: nothing can be sent. [servo thread]
     struct Moment {
@@ -91,11 +91,12 @@ class SserialPortControl {
     SserialCommand write(SserialPortPins &pins, const Moment &moment) noexcept;
     /// One exchange in set-up with a channel. [servo thread]
     SserialCommand setup_step(int channel) noexcept;
-    /// All parameters are written, or one of `failed` channels could not be. [servo thread]
+    /// Called when all parameters are written, or one of the `failed` channels could not be written. [servo
+    /// thread]
     void finish_setup(SserialPortPins &pins, std::uint32_t failed) noexcept;
-    /// The start of the set-up may be lost. [servo thread]
+    /// Called when the start of the set-up may have been lost. [servo thread]
     void repeat_setup(SserialPortPins &pins) noexcept { enter(pins, SserialState::IDLE); }
-    /// Events since the last call, once. [servo thread]
+    /// Events since the last call; returned once. [servo thread]
     SserialEvents take_event() noexcept;
     SserialOutputs take_outputs() noexcept;
 
@@ -116,13 +117,13 @@ class SserialPortControl {
     SserialState state_ = SserialState::IDLE;
     double in_state_s_ = 0.0, gap_s_ = 0.0, stopped_s_ = 0.0, quiet_s_ = 0.0;
     std::uint32_t last_command_ = 0;
-    bool clear_ = false;    ///< the last read saw no command in work
+    bool clear_ = false;    ///< in the last read no command was active
     bool answered_ = true;  ///< the last command has been evaluated
     bool stop_sent_ = false, setup_done_ = false, recovering_ = false, late_reported_ = false;
-    int exchanges_ = 0;  ///< since the start of the cards, up to a few
+    int exchanges_ = 0;  ///< number since the start of the cards, up to a few
     int silent_starts_ = 0;
-    int late_streak_ = 0;  ///< exchanges in a row that a read saw in work
-    int late_reads_ = 0;   ///< reads that saw this exchange in work
+    int late_streak_ = 0;  ///< number of consecutive exchanges that were active during a read
+    int late_reads_ = 0;   ///< number of reads during this exchange
     std::int64_t sent_ns_ = 0, late_shortest_ns_ = 0;
     SserialEvents event_;
     SserialOutputs outputs_ = SserialOutputs::KEPT;

@@ -29,7 +29,7 @@ Result<std::vector<std::uint8_t>> read_bytes(const ReadCardByte &read, std::uint
     return bytes;
 }
 
-/// Reads a text that ends with 0; `address` moves behind it.
+/// Reads a text that ends with 0; `address` moves after it.
 Result<std::string> read_text(const ReadCardByte &read, std::uint16_t &address) {
     const std::uint16_t start = address;
     std::string text;

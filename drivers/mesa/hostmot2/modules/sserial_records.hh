@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How a smart serial card describes its process data: records in its memory, listed by two tables (PTOC:
+// The description of process data in a smart serial card: records in its memory, listed by two tables (PTOC:
 // process data and modes; GTOC: all). Source: shared/hardware.md, part B9.
 #pragma once
 
@@ -42,7 +42,7 @@ struct DataRecord {
     float min = 0.0F, max = 0.0F;
     std::uint16_t value_address = 0;
     std::string unit, name;     ///< as in the card
-    std::uint16_t address = 0;  ///< of the record
+    std::uint16_t address = 0;  ///< address of the record
 
     bool operator==(const DataRecord &) const = default;
 };
@@ -57,11 +57,11 @@ struct ModeRecord {
 
 struct CardRecords {
     std::vector<DataRecord> process;     ///< in the order of the PTOC
-    std::vector<DataRecord> parameters;  ///< in the GTOC and not in the PTOC
+    std::vector<DataRecord> parameters;  ///< records in the GTOC and not in the PTOC
     std::vector<ModeRecord> modes;
 };
 
-/// All records of a card. An error names the address of what cannot be read or is not a record.
+/// Reads all records of a card. An error names the address of data that cannot be read or are not a record.
 /// [while loading]
 Result<CardRecords> read_card_records(const ReadCardByte &read, std::uint16_t ptoc, std::uint16_t gtoc);
 
@@ -70,8 +70,8 @@ struct FieldPosition {
     int record = 0;  ///< index in CardRecords::process
     int first_bit = 0;
 };
-/// Inputs and outputs are packed apart, each from bit 0 in the order of the PTOC. A field in both directions
-/// has a position in both.
+/// Positions of inputs and outputs, which are packed separately, each from bit 0 in the order of the PTOC. A
+/// field in both directions has a position in both.
 struct ProcessLayout {
     std::vector<FieldPosition> inputs, outputs;
     int input_bits = 0, output_bits = 0;
@@ -81,7 +81,7 @@ Result<ProcessLayout> process_layout(const std::vector<DataRecord> &process, int
 
 /// `bits` (1 to 64) of words of 32 bit, from bit `first`. [any thread]
 std::uint64_t field_bits(std::span<const std::uint32_t> words, int first, int bits) noexcept;
-/// Replaces them. [any thread]
+/// Replaces these bits. [any thread]
 void set_field_bits(std::span<std::uint32_t> words, int first, int bits, std::uint64_t value) noexcept;
 
 }  // namespace mw::mesa

@@ -30,8 +30,7 @@ constexpr int BAUDRATE_OFFSET = 42;
 
 }  // namespace
 
-// The discovery of a card takes thousands of packets, so that more of them may be lost in a row than
-// elsewhere.
+// The discovery of a card takes thousands of packets, so more consecutive losses are accepted than elsewhere.
 Result<std::uint32_t> SserialSetup::read(std::uint16_t address) {
     auto words = bus_.read_now({address, 1});
     for (int again = 0; !words && again < MOST_REPEATS; ++again) {

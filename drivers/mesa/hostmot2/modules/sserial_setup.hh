@@ -27,7 +27,7 @@ class SserialSetup {
   public:
     /// Waits between two reads of the command register.
     using Pause = std::function<void()>;
-    /// The port `instance` of a module. The bus and the module must stay.
+    /// The port `instance` of a module. The bus and the module must outlive it.
     SserialSetup(RegisterBus &bus, const UsedModule &module, int instance, Pause pause)
         : bus_(bus), module_(module), instance_(instance), pause_(std::move(pause)) {}
 
@@ -35,8 +35,8 @@ class SserialSetup {
     Result<SserialPort> reset();
     /// Sets the baud rate of the first `channels` channels [bit/s].
     Result<> set_baudrate(int channels, std::uint32_t baudrate);
-    /// Starts the set-up of the channels in `mask`: the mask of those with a card. The description of a card
-    /// depends on its mode; `modes` has one for each channel, without one it is mode 0.
+    /// Starts the set-up of the channels in `mask`; returns the mask of channels with a card. The description
+    /// of a card depends on its mode; `modes` has one for each channel, and missing modes are 0.
     Result<std::uint32_t> start_setup(std::uint32_t mask, std::span<const std::uint8_t> modes = {});
     /// The card of a channel in set-up.
     Result<SserialCard> card(int channel);
@@ -45,7 +45,8 @@ class SserialSetup {
     /// Reads a value of 1, 2, 4 or 8 bytes, the lowest byte first. The record determines how it is read.
     Result<std::uint64_t> read_card_value(int channel, std::uint16_t address, int bytes);
     Result<std::uint64_t> read_nonvolatile_value(int channel, std::uint16_t address, int bytes);
-    /// Starts the exchange of process data with a mode for each channel: the mask of those that follow.
+    /// Starts the exchange of process data with a mode for each channel; returns the mask of channels that
+    /// follow.
     Result<std::uint32_t> start_normal(std::uint32_t mask, std::span<const std::uint8_t> modes);
     Result<> stop(std::uint32_t mask);
 

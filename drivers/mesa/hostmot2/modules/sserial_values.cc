@@ -21,7 +21,7 @@ std::int64_t sign_extended(std::uint64_t raw, int bits) noexcept {
     return static_cast<std::int64_t>(raw << shift) >> shift;
 }
 
-/// 0 for a value that is not finite, for example with a wrong scale.
+/// Returns 0 for a value that is not finite, for example with a wrong scale.
 double finite(double value) noexcept {
     return std::isfinite(value) ? value : 0.0;
 }
@@ -148,7 +148,7 @@ std::size_t add_values(SserialCardValues &card, const SserialField &field) {
     return card.bits.size() - static_cast<std::size_t>(field.bits);
 }
 
-/// The two halves of one encoder, a record each with the same name, become one field.
+/// Joins the two halves of an encoder, which are records with the same name, to one field.
 void join_halves(SserialCardValues &card, const std::vector<DataRecord> &process) {
     for (std::size_t i = 0; i < process.size(); ++i) {
         for (std::size_t j = 0; j < process.size(); ++j) {
@@ -236,7 +236,7 @@ void release_outputs(SserialCardValues &card) noexcept {
 
 std::uint64_t unsigned_bits(const SserialNumber &number, int bits) noexcept {
     const double fraction = std::max(fraction_of(number), 0.0);
-    // All bits are exact in a double up to 53 bits; above, the end must not round up to 2^bits.
+    // Up to 53 bits all values are exact in a double; above, the end must not be rounded up to 2^bits.
     return fraction >= 1.0 ? mask_of(bits)
                            : static_cast<std::uint64_t>(fraction * static_cast<double>(mask_of(bits)));
 }
@@ -272,7 +272,7 @@ void count_encoder(SserialCounter &counter, std::uint64_t raw, int bits) noexcep
         const auto floor_rev = [rev](std::int64_t value) {
             return value >= 0 ? value / rev : -((-value + rev - 1) / rev);
         };
-        // The last index on the way: at or before the count upwards, at or after it downwards.
+        // The last index passed: at or below the count for upward motion, at or above it for downward motion.
         const std::int64_t index = (change > 0 ? floor_rev(counter.total) : -floor_rev(-counter.total)) * rev;
         const bool passed = change > 0 ? index > before : index < before;
         if (passed) {

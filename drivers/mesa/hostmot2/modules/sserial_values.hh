@@ -54,12 +54,12 @@ struct SserialField {
     FieldDirection direction = FieldDirection::INPUT;
     std::string name;  ///< in lower case
     int bits = 0;
-    int low_bits = 0;        ///< of a second half of an encoder, in input_low
+    int low_bits = 0;        ///< low bits from the second half of an encoder, in input_low
     int input = -1;          ///< first bit in the words from the card; -1: none
     int input_low = -1;      ///< of the second half of an encoder
     int output = -1;         ///< first bit in the words to the card; -1: none
-    std::size_t index = 0;   ///< of its first value in the list of its type
-    std::uint64_t held = 0;  ///< bits that stay off until their pin was off
+    std::size_t index = 0;   ///< index of its first value in the list of its type
+    std::uint64_t held = 0;  ///< bits that remain off until their pin was off
     float min = 0.0F, max = 0.0F;
 
     bool hasInput() const noexcept { return input >= 0; }
@@ -84,9 +84,9 @@ std::string lower_case(std::string_view text);
 void sserial_read(SserialCardValues &card, std::span<const std::uint32_t> words) noexcept;
 /// Fills the words for a card. [servo thread]
 void sserial_write(SserialCardValues &card, std::span<std::uint32_t> words) noexcept;
-/// All outputs are off from now on. Each follows its pin again after its pin was off once. [servo thread]
+/// Switches all outputs off. Each output follows its pin again after the pin was off once. [servo thread]
 void hold_outputs(SserialCardValues &card) noexcept;
-/// All outputs follow their pins. [servo thread]
+/// All outputs follow their pins again. [servo thread]
 void release_outputs(SserialCardValues &card) noexcept;
 
 /// The bits of a number with `bits` bits (1 to 64): unsigned numbers are 0 to all bits set, signed ones use
@@ -97,7 +97,7 @@ std::uint64_t signed_bits(const SserialNumber &number, int bits) noexcept;
 /// The number of bits from a card; 0 when it is not finite. [any thread]
 double unsigned_number(std::uint64_t raw, int bits, double scale_max) noexcept;
 double signed_number(std::uint64_t raw, int bits, double scale_max) noexcept;
-/// Continues the count from its low bits; resets the position, and finds the index: with index-enable, the
+/// Extends the count from its low bits, resets the position, and processes the index: with index-enable, the
 /// multiple of counts-per-rev that was passed becomes 0. [servo thread]
 void count_encoder(SserialCounter &counter, std::uint64_t raw, int bits) noexcept;
 

@@ -183,7 +183,7 @@ void stepgen_take_latch(StepgenLatch &latch, StepgenState &state, StepgenPins &p
     if (!latch.sent || !(pins.index_enable || pins.probe_enable)) {
         return;
     }
-    // When it is not known whether the arm was received, an event shows by another position.
+    // If it is not known whether the arm was received, an event is detected by a changed position.
     latch.confirmed =
         latch.confirmed || armed || !reading.has_lost_write || (reading.value & LATCHED) != latch.before;
     if (armed || !latch.confirmed) {
@@ -211,7 +211,7 @@ StepgenModeWrite stepgen_latch_mode(StepgenLatch &latch, StepgenPins &pins) noex
     const std::uint32_t arm = pins.index_enable ? LATCH_ON_INDEX : pins.probe_enable ? LATCH_ON_PROBE : 0U;
     const std::uint32_t has = latch.mode & SETTINGS;
     if (arm != 0 && latch.confirmed && (has & arm) != 0) {
-        return {};  // a write now could arm again after an event that is not read yet
+        return {};  // a write now could arm the latch again after an event that is not read yet
     }
     if (arm == 0) {
         latch.sent = latch.confirmed = false;

@@ -11,7 +11,8 @@
 namespace mw::mesa {
 
 constexpr std::uint32_t MAX_STEP_CLOCKS = 0x3FFF, MAX_TABLE_STEPS = 16;
-constexpr std::uint32_t LONGEST_STEP_TIME = 0xFFFFFFFF;  ///< [ns], limited to what the board can count
+constexpr std::uint32_t LONGEST_STEP_TIME = 0xFFFFFFFF;  ///< maximum time [ns], limited to the range of the
+                                                         ///< board
 
 /// Values of the pins and parameters of one step generator.
 struct StepgenPins {
@@ -57,12 +58,12 @@ constexpr PinRow<StepgenPins> STEPGEN_PINS[] = {
     {"dirhold", Access::RW, &StepgenPins::dirhold},
     {"step_type", Access::RW, &StepgenPins::step_type},
 };
-/// Of firmware that can swap the outputs.
+/// For firmware that can swap the outputs.
 constexpr PinRow<StepgenPins> STEPGEN_SWAP_PINS[] = {
     {"swap_step_dir", Access::RW, &StepgenPins::swap_step_dir},
 };
 
-/// Of firmware that latches the position at an index or probe edge.
+/// For firmware that latches the position at an index or probe edge.
 constexpr PinRow<StepgenPins> STEPGEN_LATCH_PINS[] = {
     {"index-enable", Access::IO, &StepgenPins::index_enable},
     {"index-invert", Access::IN, &StepgenPins::index_invert},
@@ -83,30 +84,31 @@ struct StepgenState {
     std::int64_t zero = 0;   ///< total at which counts are 0
     std::uint32_t accumulator = 0;
     bool known = false;         ///< the accumulator has been read
-    double moved = 0.0;         ///< estimated motion since the last read that succeeded [steps]
+    double moved = 0.0;         ///< estimated motion since the last successful read [steps]
     double velocity = 0.0;      ///< commanded [position units/s]
     double previous_cmd = 0.0;  ///< [position units]
     bool has_previous_cmd = false;
 };
 
-/// Whole clocks of at least `ns`, limited to what the register holds.
+/// Whole clocks of at least `ns`, limited to the range of the register.
 std::uint32_t step_clocks(std::uint32_t ns, std::uint32_t clock_hz) noexcept;
-/// The longest time that the board can count [ns].
+/// The maximum time that the board can count [ns].
 std::uint32_t longest_step_time(std::uint32_t clock_hz) noexcept;
-/// The register that makes `steps_s`, limited to what it holds.
+/// The register value for `steps_s`, limited to the range of the register.
 std::int32_t step_rate_register(double steps_s, std::uint32_t clock_hz) noexcept;
 /// The velocity that pins and step timing permit [position units/s].
 double stepgen_velocity_limit(const StepgenPins &pins) noexcept;
 
-/// The accumulator of the board begins again, at rate 0: the next reading continues at the present position.
+/// The accumulator of the board starts again, at rate 0: the next reading continues at the current position.
 void stepgen_restart(StepgenState &state) noexcept;
-/// Takes the accumulator: sets counts and position-fb. No step is lost when it wraps.
+/// Processes the accumulator: sets counts and position-fb. No step is lost when it wraps.
 void stepgen_read(StepgenState &state, StepgenPins &pins, std::uint32_t accumulator) noexcept;
 /// The rate register of this cycle. A step generator that is not enabled has the rate 0 at once.
 /// `isFresh`: stepgen_read() was called in this cycle; else the position is estimated from the rate.
 std::int32_t stepgen_rate(StepgenState &state, StepgenPins &pins, double period_s, bool fresh,
                           std::uint32_t clock_hz) noexcept;
-/// The mode register without the latches. A step_type from 3 on is a table of so many steps, at most 16.
+/// The mode register without the latches. A step_type of 3 or more is a table with that number of steps, at
+/// most 16.
 std::uint32_t stepgen_mode(StepgenPins &pins) noexcept;
 
 /// The table of steps, as the outputs of each.
@@ -119,9 +121,10 @@ struct StepTable {
 StepTable step_table(std::uint32_t step_type, const StepTablePins &pins) noexcept;
 
 /// The latch of a step generator. The mode register shows whether it is armed, and the latched position. As
-/// with encoders it is written only when the state of the board is known: a lost packet never arms twice.
+/// with encoders, it is written only when the state of the board is known, so a lost packet never arms the
+/// latch twice.
 struct StepgenLatch {
-    bool sent = false;         ///< an arm was written for the present request
+    bool sent = false;         ///< an arm was written for the current request
     bool confirmed = false;    ///< the board has received it
     std::uint32_t before = 0;  ///< latched position when the arm was written
     std::uint32_t mode = 0;    ///< as last read
@@ -131,12 +134,12 @@ struct StepgenModeReading {
     std::uint32_t value = 0;
     bool has_lost_write = false;  ///< the last write may not have reached the board
 };
-/// Takes the mode register, after stepgen_read(): a latch that happened clears index-enable or probe-enable.
-/// An index makes the latched position the new zero.
+/// Processes the mode register, after stepgen_read(): a latch event resets index-enable or probe-enable.
+/// After an index the latched position is the new zero.
 void stepgen_take_latch(StepgenLatch &latch, StepgenState &state, StepgenPins &pins,
                         const StepgenModeReading &reading) noexcept;
-/// Whether the mode register must be written, and its value. Only in a cycle with a reading; when the result
-/// is due it must be written.
+/// Whether the mode register must be written, and its value. Only in a cycle with a reading. If the result is
+/// due, it must be written.
 struct StepgenModeWrite {
     bool isDue = false;
     std::uint32_t value = 0;

@@ -113,7 +113,7 @@ class Stepgens final : public Module {
             if (has_latch_) {
                 binding_.bind(space, name, STEPGEN_LATCH_PINS, one.pins);
             }
-            // LinuxCNC has them with every firmware; without table pins they have no effect.
+            // LinuxCNC creates these pins with every firmware; without table pins they have no effect.
             binding_.bind(space, name, STEPGEN_TABLE_PINS, one.table_pins);
         }
         if (has_timer_) {
@@ -158,7 +158,7 @@ class Stepgens final : public Module {
         StepgenState state;
         StepgenLatch latch;
         StepTablePins table_pins;
-        StepTable table;  ///< as it was sent
+        StepTable table;  ///< table as sent
         WriteHandle rate, mode, setup, hold, width, space, length;
         std::array<WriteHandle, MAX_TABLE_STEPS> steps;
     };
@@ -172,7 +172,7 @@ class Stepgens final : public Module {
             }
         }
     }
-    /// The board takes the steps of a table from the last to the first, always all of them.
+    /// The board expects the steps of a table from the last to the first, always all of them.
     void write_table(Registers &registers, const Cycle &cycle, Instance &one) const noexcept {
         const StepTable table = step_table(one.pins.step_type, one.table_pins);
         if (!has_tables_ || !cycle.writing || table == one.table) {

@@ -49,7 +49,7 @@ std::uint32_t three_phase_setup(ThreePhasePins &pins, double pwm_clock_hz) noexc
     constexpr double MOST_DEAD = 511.0, SAMPLE_STEPS = 1023.0, NS_PER_S = 1e9;
     constexpr std::uint32_t FAULT_ON_HIGH = 1U << 15U;
     const double unit_ns = 2.0 * NS_PER_S / pwm_clock_hz;
-    // A shorter dead time than the user requires can destroy the bridge.
+    // A shorter dead time than the user has set can destroy the bridge.
     double dead = std::ceil(pins.deadtime / unit_ns);
     if (!(dead >= 0.0 && dead <= MOST_DEAD)) {
         dead = dead < 0.0 ? 0.0 : MOST_DEAD;

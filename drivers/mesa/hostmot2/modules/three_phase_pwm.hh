@@ -57,7 +57,7 @@ struct ThreePhaseState {
 
 /// Takes the enable register: bit 0 enabled, bit 1 fault.
 void three_phase_read(ThreePhaseState &state, ThreePhasePins &pins, std::uint32_t enable_register) noexcept;
-/// Value for the enable register. An enable of 0 is due in each cycle.
+/// Value for the enable register. A value of 0 is due in each cycle.
 struct ThreePhaseEnable {
     bool isDue = false;
     std::uint32_t value = 0;

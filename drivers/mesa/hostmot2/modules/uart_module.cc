@@ -56,7 +56,7 @@ class Uarts final : public Module {
         for (Instance &one : instances_) {
             one.sending = registers.value(one.tx_count) & COUNT_MASK;
             one.available = registers.value(one.rx_count) & COUNT_MASK;
-            // Fewer bytes than were counted: another host has read them, or the board was reset.
+            // There are fewer bytes than counted if another host has read them or the board was reset.
             if (one.scheduled <= one.available) {
                 take(registers, one);
                 one.available -= one.scheduled;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The watchdog of a board: it turns all pins to inputs when the driver does not write in time. Registers:
+// The watchdog of a board, which switches all pins to inputs if the driver does not write in time. Registers:
 // shared/hardware.md, part B2.
 #pragma once
 
@@ -15,7 +15,7 @@ struct WatchdogPins {
 /// The timer register: (n + 1) / clock is the time.
 std::uint32_t watchdog_timer(std::uint32_t timeout_ns, std::uint32_t clock_hz) noexcept;
 
-/// Status 1 means a bite; at power-up it reads 1, too, until the watchdog is cleared for the first time.
+/// Status 1 means a bite. At power-up the status is also 1, until the watchdog is cleared for the first time.
 class Watchdog final : public Module {
   public:
     explicit Watchdog(const UsedModule &module) : module_(module) {}
@@ -25,19 +25,20 @@ class Watchdog final : public Module {
     void read(const Registers &registers, const Cycle &cycle) noexcept override;
     void write(Registers &registers, const Cycle &cycle) noexcept override;
 
-    /// Bitten until the operator clears has_bit: nothing may be written. [servo thread]
+    /// True from a bite until the operator resets has_bit; nothing may be written in this time. [servo
+    /// thread]
     bool isBitten() const noexcept { return pins_.has_bit; }
-    /// The next write must hold all registers: the operator cleared has_bit, or the board does not yet
-    /// confirm that it is armed. [servo thread]
+    /// True if the next write must contain all registers: the operator has reset has_bit, or the board has
+    /// not yet confirmed that it is armed. [servo thread]
     bool isRewriteWanted() const noexcept { return !armed_; }
-    /// True once after a bite was found. [servo thread]
+    /// True once after a bite was detected. [servo thread]
     bool take_bite() noexcept;
     std::uint32_t timeout_ns() const noexcept { return pins_.timeout_ns; }
     std::uint16_t timer_address() const noexcept { return module_.address(0); }
 
   private:
-    /// Number of reads with status 1 after which a watchdog that was cleared counts as bitten again. A lost
-    /// write causes one or two.
+    /// Number of reads with status 1 after which a cleared watchdog counts as bitten again. A lost write
+    /// causes one or two such reads.
     static constexpr int MOST_ATTEMPTS = 10;
 
     UsedModule module_;

@@ -17,7 +17,7 @@ class AbsoluteOfBoard : public BoardTest {
     }
 };
 
-/// The registers that LinuxCNC's driver writes and the pins that it shows.
+/// Compares with the registers that LinuxCNC's driver writes and the pins that it shows.
 TEST_F(AbsoluteOfBoard, SsiAgreesWithLinuxCnc) {
     load_with(Gtag::SSI, SSI, "num_dplls=0 ssi_chan_0=error%1bposition%24ge");
     EXPECT_EQ(bus.registers[SSI + 0x200], 0x01470119U);

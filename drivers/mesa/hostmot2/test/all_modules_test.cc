@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A board with every module: no cycle allocates memory, and nothing moves before a user enables it.
+// Tests a board with every module: no cycle allocates memory, and nothing moves before a user enables it.
 #include <random>
 
 #include "drivers/mesa/hostmot2/modules/packet_uart.hh"

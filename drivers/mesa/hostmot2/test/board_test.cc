@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lists of a cycle, watchdog, inputs and outputs, LEDs: what the driver writes and when.
+// Tests the lists of a cycle, watchdog, inputs and outputs, LEDs: the registers that the driver writes, and
+// when.
 #include <algorithm>
 
 #include "drivers/mesa/hostmot2/modules/small.hh"
@@ -79,7 +80,7 @@ TEST_F(CycleOfBoard, WritesAllAfterAFailure) {
     EXPECT_EQ(bus.written.back().size(), few);
 }
 
-// A bite of which the driver does not know yet must not be undone.
+// A bite that the driver has not detected yet must not be undone.
 TEST_F(CycleOfBoard, WritesNoConfigurationInACycleWhoseReadFailed) {
     cycle(3);
     const std::size_t few = bus.written.back().size();
@@ -101,7 +102,7 @@ TEST_F(CycleOfBoard, WritesNoConfigurationWhenItWasSuspendedAfterTheRead) {
     cycle();
     board->read(PERIOD_NS, now_ns + PERIOD_NS);
     now_ns += 100 * PERIOD_NS;
-    bus.registers[STATUS] = 1;  // the watchdog bites meanwhile
+    bus.registers[STATUS] = 1;  // the watchdog bites in this time
     write();
     EXPECT_EQ(bus.written.back().size(), few);
     cycle();

@@ -144,7 +144,7 @@ TEST_F(BoardInHal, EveryTestBoardIsRefused) {
         machine.messages.lines.clear();
         EXPECT_NE(machine.load("hm2_test", {"test_pattern=" + std::to_string(pattern)}), "ok") << pattern;
         const std::string all = machine.messages.all();
-        // LinuxCNC's test hm2-idrom: the reason is between these two errors.
+        // LinuxCNC's test hm2-idrom expects the reason between these two errors.
         const std::size_t begin = all.find("hm2_test: loading HostMot2 test driver with test pattern ");
         const std::size_t reason = all.find(std::string("hm2/hm2_test.0: ") + text);
         const std::size_t end = all.find("hm2_test.0: hm2_test fails HM2 registration");

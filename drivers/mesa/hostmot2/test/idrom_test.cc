@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint16_t HEADER = 0x0400;
 
-/// As register_board() reads it.
+/// Reads as register_board() does.
 Result<Idrom> read_idrom(MemoryBus &bus) {
     return decode_idrom(
         [&](std::uint16_t address, int count) {

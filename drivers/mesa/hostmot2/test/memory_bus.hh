@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A board for tests: a map of registers with a record of what is written, and failures on demand.
+// A board for tests: a map of registers with a record of writes, and failures set by the test.
 #pragma once
 
 #include <functional>
@@ -25,7 +25,8 @@ class MemoryBus final : public RegisterBus {
     std::function<std::optional<std::uint32_t>(std::uint16_t)> on_read_register;
     /// Called before each read of a cycle.
     std::function<void()> on_read;
-    /// Result of the next read; the next write is lost, so that the bus requires all registers afterwards.
+    /// Result of the next read; DONE unless set. The next write is lost, so that the bus requires all
+    /// registers afterwards.
     CycleRead next_read = CycleRead::DONE;
     bool next_write_lost = false;
     bool next_write_rejected = false;  ///< it cannot be sent
@@ -164,7 +165,7 @@ class MemoryBus final : public RegisterBus {
         rewrite_wanted = false;
         return wanted;
     }
-    bool recording = true;  ///< the record allocates
+    bool recording = true;  ///< the record allocates memory
 };
 
 }  // namespace mw::mesa::test

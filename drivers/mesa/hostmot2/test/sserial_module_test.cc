@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The smart serial module between registers and pins: its lists, and what a cycle may do.
+// Tests the smart serial module between registers and pins: its lists, and the writes of a cycle.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ class ModuleOfSmartSerial : public ::testing::Test {
         EXPECT_TRUE(registers.fix(bus).has_value());
         serial->declare(pins);
     }
-    /// The list of a cycle in which the processor is done at once.
+    /// The list of a cycle in which the processor completes its command at once.
     std::vector<RegisterWrite> cycle(std::uint32_t command = 0) {
         for (std::uint32_t &word : registers.inputs()) {
             word = 0;
@@ -178,7 +178,7 @@ TEST_F(ModuleOfSmartSerial, WritesParametersThatDifferBeforeItStartsTheCards) {
     for (int i = 0; i < 60; ++i) {
         lists.push_back(cycle());
     }
-    // 16 bits at once; non-volatile memory is opened before and closed after. So does LinuxCNC.
+    // 16 bits at once; non-volatile memory is opened before and closed after the write, as in LinuxCNC.
     const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{
         {0x65000000, 0xFFFA}, {0xEC000000, 1}, {0x66000000, 0x40000000}, {0xEC000000, 0}};
     EXPECT_EQ(setup_of(lists), expected);

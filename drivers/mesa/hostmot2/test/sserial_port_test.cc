@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The state of a smart serial port against a processor that the test plays, in virtual time.
+// Tests the state of a smart serial port with a simulated processor, in virtual time.
 #include <algorithm>
 #include <vector>
 
@@ -14,7 +14,7 @@ class PortOfSmartSerial : public ::testing::Test {
   protected:
     static constexpr std::int64_t PERIOD_NS = 1'000'000, WRITE_NS = 100'000;
 
-    /// A read that sees the last command done, or still in work.
+    /// A read in which the last command is complete, or still active.
     void read() {
         now_ns += PERIOD_NS - WRITE_NS;
         SserialReading reading;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The description of a smart serial card: a 7I76 with its outputs, inputs and spindle.
+// Tests the description of a smart serial card: a 7I76 with its outputs, inputs and spindle.
 #include <cstring>
 #include <map>
 #include <random>

@@ -91,8 +91,8 @@ TEST_F(LatchOfBoard, NeitherLosesNorRepeatsAnEventWhenPacketsAreLost) {
     std::uniform_real_distribution<double> speed(0.1, 40.0);
     double position = 0.0;
     constexpr double REV = 200.0;
-    // Two events in a row are not at the same 1/256 of a step: only then the loss of the answer after the arm
-    // could hide an event.
+    // Two consecutive events are not at the same 1/256 of a step; only then the loss of the answer after the
+    // arm could hide an event.
     for (int round = 0; round < 3000; ++round) {
         const double velocity = speed(random) * (random() % 2 == 0 ? 1 : -1);
         pins.set(name + "index-enable", 1);

@@ -124,7 +124,7 @@ TEST_F(StepgenOfBoard, FollowsATrajectoryWithLostCyclesWithinOneCycleOfVelocity)
         bus.next_read = random() % 50 == 0 ? CycleRead::FAILED : CycleRead::DONE;
         bus.next_write_lost = random() % 50 == 0;
         pass();
-        // The motor is where the command was one cycle ago.
+        // The motor is at the command of one cycle ago.
         worst = std::max(worst, std::abs(motor.steps() / 400 - (position - 2 * velocity * PERIOD_S)));
     }
     EXPECT_LT(worst, 3 * 50 * PERIOD_S) << "50 units/s for the lost cycles";
@@ -144,7 +144,7 @@ TEST_F(StepgenOfBoard, ApproachesAStepOfTheCommandWithoutOvershootOrExcessAccele
     pins.set(name + "enable", 1);
     pass();
     pins.set(name + "position-cmd", 1.5);
-    // The velocity of the command in the cycle of the step is what maxvel and maxaccel limit.
+    // maxvel and maxaccel limit the velocity of the command in the cycle of the step.
     double before = 0.0, most = 0.0;
     for (int i = 0; i < 2000; ++i) {
         pass();

@@ -81,7 +81,7 @@ TEST_F(ThreePhaseOfBoard, StaysOffAfterAFaultUntilTheNextEdge) {
     has_fault_input = false;
     enable_writes = 0;
     for (int i = 0; i < 20; ++i) {
-        bus.next_write_lost = i % 3 == 0;  // the next write holds all registers
+        bus.next_write_lost = i % 3 == 0;  // the next write contains all registers
         bus.next_read = i % 5 == 4 ? CycleRead::FAILED : CycleRead::DONE;
         cycle();
     }

@@ -75,7 +75,7 @@ TEST(Idrom, WhatIsEncodedIsDecoded) {
     }
 }
 
-// The words are written by hand, to find an error that encoder and decoder share.
+// The words are written by hand, to detect an error that encoder and decoder share.
 TEST(Idrom, TheRegistersHaveTheKnownLayout) {
     const Registers registers = registers_of(small_idrom());
     EXPECT_EQ(registers.at(0x0100), 0x55AACAFEU);
@@ -92,7 +92,7 @@ TEST(Idrom, TheRegistersHaveTheKnownLayout) {
     EXPECT_EQ(registers.at(0x05C4), 0x03020681U);
 }
 
-// The texts that LinuxCNC 2.9 prints for the patterns 0 to 14 of its hm2_test (seen by running it).
+// The texts that LinuxCNC 2.9 prints for the patterns 0 to 14 of its hm2_test (from running it).
 TEST(Idrom, TheErrorsHaveTheTextsThatUsersKnow) {
     const CardShape card{.ports = 1, .port_width = 24};
     Registers registers = registers_of(small_idrom());
@@ -202,7 +202,7 @@ TEST(Idrom, EncodingChecksThatThePartsFit) {
     EXPECT_FALSE(encode_idrom(idrom, 0xFF00).has_value());
 }
 
-// Random changes of single registers: a description is rejected, or it is one that could be encoded.
+// Random changes of single registers: a description is rejected, or it can be encoded.
 TEST(Idrom, AChangedDescriptionIsRejectedOrConsistent) {
     std::mt19937 random(39);
     const Registers good = registers_of(small_idrom());

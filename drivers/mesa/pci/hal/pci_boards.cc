@@ -24,7 +24,7 @@ namespace mw::mesa {
 
 namespace {
 
-/// State of the load: rtapi calls functions without a context.
+/// State of the load, because rtapi calls functions without a context.
 struct Load {
     int comp_id = 0;
     std::span<char *const> configs;
@@ -50,11 +50,11 @@ std::array<rtapi_pci_device_id, std::size(PCI_CARDS) + 1> id_table() {
     return table;
 }
 
-/// Lets the bridge of a 5I20 or 4I65 acknowledge accesses.
+/// Sets the bridge of a 5I20 or 4I65 to acknowledge accesses.
 void prepare_bridge(rtapi_pci_dev &device) {
     volatile void *const mapped = rtapi_pci_ioremap_bar(&device, 0);
     if (mapped == nullptr) {
-        return;  // reported; if the bridge is not ready, the card has no cookie
+        return;  // reported; if the bridge is not ready, the card has no valid cookie
     }
     auto *const registers = static_cast<volatile std::uint32_t *>(mapped);
     for (const std::uint16_t offset : Plx9030::DESCRIPTORS) {
@@ -122,7 +122,7 @@ int probe(rtapi_pci_dev *device, const rtapi_pci_device_id * /*entry*/) {
     }
     load.status = load_card(*device, *card);
     ++load.found;
-    return 0;  // also after an error: the memory stays mapped until all boards are removed
+    return 0;  // also after an error, because the memory remains mapped until all boards are removed
 }
 
 void remove(rtapi_pci_dev *device) {
@@ -140,7 +140,7 @@ rtapi_pci_driver &driver() {
 
 namespace {
 
-/// The card that names itself so: 5I20.
+/// The card with this name in its firmware: 5I20.
 const PciCard *find_named_card(const std::string &name) {
     std::string hal_name = name.substr(0, name.find('-'));
     std::ranges::transform(hal_name, hal_name.begin(),

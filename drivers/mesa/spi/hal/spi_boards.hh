@@ -21,7 +21,8 @@ struct SpiLoad {
     std::string config;
 };
 
-/// 0, or a negated errno with a message; remove_direct_boards() follows also then. [while loading]
+/// 0, or a negated errno with a message. remove_direct_boards() is also called after a failure. [while
+/// loading]
 MW_HOSTMOT2_API int load_spi_board(const SpiLoad &load);
 
 /// The module parameters of hm2_rpspi and hm2_spix.
@@ -29,13 +30,14 @@ struct ProbeLoad {
     int comp_id = 0;
     std::string module;
     unsigned probe = 1;              ///< spi_probe=
-    std::span<const int> rates_khz;  ///< spiclk_rate=; of the boards in their order, up to 0: as the first
+    std::span<const int> rates_khz;  ///< spiclk_rate=; in the order of the boards; up to 0: as for the first
+                                     ///< board
     std::span<const int> read_rates_khz;  ///< spiclk_rate_rd=
     std::span<char *const> configs;
 };
 
-/// Loads the boards of all probe bits: 0, or a negated errno with a message; remove_direct_boards() follows
-/// also then. [while loading]
+/// Loads the boards of all probe bits. Returns 0, or a negated errno with a message. remove_direct_boards()
+/// is also called after a failure. [while loading]
 MW_HOSTMOT2_API int load_probed_boards(const ProbeLoad &load);
 
 }  // namespace mw::mesa

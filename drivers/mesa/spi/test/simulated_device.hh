@@ -10,7 +10,7 @@
 
 namespace mw::mesa::test {
 
-/// A transfer as it was sent.
+/// A transfer as sent.
 struct SentTransfer {
     std::vector<std::uint32_t> words;
     spi::Direction direction = spi::Direction::READS;

@@ -81,7 +81,7 @@ TEST(SpiRegisters, LongReadsAndWritesAreSplitIntoCommands) {
 
 class SpiWires : public ::testing::TestWithParam<std::uint32_t> {};
 
-// An open wire reads as zeros or as ones; neither is taken for data.
+// An open wire reads as zeros or as ones; neither is treated as data.
 TEST_P(SpiWires, AnOpenWireIsAFailureAndThenStops) {
     DirectRig rig(plan_of());
     rig.cycle(10);
@@ -130,7 +130,7 @@ TEST(Spidev, ProbesNameDevices) {
               "SPI device /nonexistent/spidev9.9: cannot open it: No such file or directory.");
 }
 
-/// A bus without answers, for testing the registers alone.
+/// A bus without answers, to test only the registers.
 class EmptyDevice final : public spi::Device {
   public:
     int transfer(std::span<std::uint32_t>, spi::Direction) noexcept override { return 0; }
