@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the commands of `millwright` begin with.
+// Functions that the commands of `millwright` share at their start.
 #pragma once
 
 #include <cstdio>
@@ -16,8 +16,8 @@
 
 namespace mw::programs {
 
-/// Reads the arguments into `words`, which has `line()` and `parse()`. The exit status where the command ends
-/// with that: 0 after --help, 2 after a message about wrong usage.
+/// Reads the arguments into `words`, which has `line()` and `parse()`. Returns the exit status if the command
+/// ends there: 0 after --help, 2 after a message about wrong usage.
 template <class Words>
 std::optional<int> ended_by_words(std::string_view command, Words &words,
                                   const std::vector<std::string> &arguments) {

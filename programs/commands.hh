@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The commands of `millwright`, each from its words to the exit status: 0 done, 1 rejected or failed, 2 wrong
-// usage.
+// The commands of `millwright`. Each takes its words and returns the exit status: 0 done, 1 rejected or
+// failed, 2 wrong usage.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright commission check, tune, report: the steps at the machine, and what they have found.
+// millwright commission check, tune, report: the steps at the machine, and their findings.
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -96,7 +96,7 @@ class CheckSession {
             if (auto done = commissioner_.cycle(); !done.has_value()) {
                 return done;
             }
-            // A machine that was started again has a new clock.
+            // A restarted machine has a new clock.
             const std::int64_t now_ns = commissioner_.machine().now_ns();
             passed_ns += std::max<std::int64_t>(0, now_ns - last_ns);
             last_ns = now_ns;
@@ -145,7 +145,7 @@ int run_steps(const char *command, const std::vector<std::string> &arguments,
             2);
     }
     catch_stop_signals();
-    // Programs of HAL files find the machine's files in the current folder.
+    // Programs of HAL files search for the machine's files in the current folder.
     std::error_code error;
     const std::string machine_folder = std::filesystem::absolute(folder, error).string();
     std::filesystem::current_path(machine_folder, error);

@@ -52,7 +52,7 @@ Commissioner::~Commissioner() {
 
 void Commissioner::stop() {
     guide_->stop();
-    // Until the outputs are off as well: a port keeps what was written last.
+    // Waits until the outputs are off, too, because a port keeps its last written value.
     constexpr int LONGEST = 1000, OUTPUTS = 10;
     int off = 0;
     for (int cycle = 0; machine_ != nullptr && cycle < LONGEST && off < OUTPUTS && machine_->health();

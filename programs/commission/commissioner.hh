@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs the machine of a folder under the guide of commissioning: starts it, and writes and starts it again
-// when a step has changed an answer.
+// Runs the machine of a folder with the guide of commissioning. It starts the machine; when a step has
+// changed an answer, it writes the files and starts the machine again.
 #pragma once
 
 #include <functional>
@@ -17,14 +17,15 @@ namespace mw::programs {
 struct CommissionSetup {
     std::string folder;
     bool clock_virtual = true;
-    /// What earlier sessions have found, and the steps of this one; null: all steps.
+    /// Findings of earlier sessions, and the steps of this session; null: all steps.
     std::vector<commissioning::Finding> known{};
     bool (*isWanted)(const commissioning::Step &) = nullptr;
-    /// The INI file to start instead of the written one, for machines with more parts; null: the written one.
+    /// The INI file that is started instead of the written file, for machines with additional parts; null:
+    /// the written file.
     std::function<Result<std::string>(const std::string &ini)> prepare;
-    /// Called with each machine after it has started, before its first cycle.
+    /// Called for each machine after its start, before its first cycle.
     std::function<void(machine::Machine &)> on_start;
-    /// A bench around the machine's own; null: none.
+    /// Creates a bench that wraps the machine's bench; null: none.
     std::function<std::unique_ptr<commissioning::Bench>(commissioning::Bench &)> wrap;
 };
 
@@ -36,7 +37,7 @@ class Commissioner {
 
     commissioning::Guide &guide() { return *guide_; }
     machine::Machine &machine() { return *machine_; }
-    /// One task cycle, and a new start of the machine when the guide wants one.
+    /// Runs one task cycle, and restarts the machine when the guide requests it.
     Result<> cycle();
     /// Ends the current step and waits until the machine and its outputs are off.
     void stop();

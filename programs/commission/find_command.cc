@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright commission find: what is connected to this computer.
+// millwright commission find: the hardware connected to this computer.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Factory addresses of Mesa boards, and that of a simulated one.
+/// Factory addresses of Mesa boards, and that of a simulated board.
 constexpr std::array USUAL_ADDRESSES{"192.168.1.121", "10.10.10.10", "127.0.0.1"};
 
 struct FindWords {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How the operator of commissioning is reached: a terminal, a script or a screen.
+// The interface to the operator of commissioning: a terminal, a script or a screen.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace mw::programs {
 
-/// Name of what the operator is asked for, for scripts and the browser.
+/// Name of the requested action, for scripts and the browser.
 inline const char *ask_name(commissioning::Ask ask) {
     switch (ask) {
     case commissioning::Ask::NOTHING: return "wait";
@@ -24,18 +24,18 @@ inline const char *ask_name(commissioning::Ask ask) {
 class OperatorChannel {
   public:
     virtual ~OperatorChannel() = default;
-    /// Shows what is new, and passes on what the operator did, without waiting. Once a cycle. @param now_s
-    /// time of the machine. False: the operator is gone.
+    /// Shows news, and passes on the operator's actions, without waiting. Called once in each cycle. @param
+    /// now_s time of the machine. False: the operator has left.
     virtual bool look(commissioning::Guide &guide, double now_s) = 0;
-    /// A step has ended.
+    /// Called when a step has ended.
     virtual void show_finding(const commissioning::Step &step, const commissioning::Finding &finding) = 0;
-    /// The machine cannot be started.
+    /// Called when the machine cannot be started.
     virtual void show_failure(const std::string &error) = 0;
-    /// The session has ended; `error` is empty unless it could not continue.
+    /// Called when the session has ended; `error` is empty unless the session could not continue.
     virtual void show_end(const commissioning::Guide &guide, const std::string &error) = 0;
 };
 
-/// Adds what waits at standard input. False: it has ended.
+/// Appends the data waiting at standard input. False at its end.
 bool read_standard_input(std::string &input);
 
 }  // namespace mw::programs

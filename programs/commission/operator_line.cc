@@ -57,7 +57,7 @@ void OperatorLine::show(const commissioning::Guide &guide) {
     std::fflush(stdout);
 }
 
-/// False: the input has ended.
+/// False at the end of the input.
 bool OperatorLine::read(double now_s) {
     if (keyboard_ != nullptr) {
         isSpaceHeld_ = false;
@@ -135,7 +135,7 @@ bool OperatorLine::look(commissioning::Guide &guide, double now_s) {
     if (guide.prompt_number() != shown_) {
         shown_ = guide.prompt_number();
         held_until_s_ = -1;
-        // What was typed before the question is no answer to it.
+        // Characters typed before the question are not an answer to it.
         while (keyboard_ != nullptr && keyboard_->read().has_value()) {
         }
         input_ = keyboard_ != nullptr ? "" : input_;

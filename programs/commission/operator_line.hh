@@ -12,21 +12,21 @@
 
 namespace mw::programs {
 
-/// Shows prompts and reads acts, without waiting. Lines: "confirm", "hold SECONDS", "number 12.5", "choice
-/// positive", "cannot". At a terminal: Enter confirms and ends a line, a held space bar is the button.
+/// Shows prompts and reads actions, without waiting. Lines: "confirm", "hold SECONDS", "number 12.5", "choice
+/// positive", "cannot". At a terminal Enter confirms and ends a line, and a held space bar is the button.
 class OperatorLine final : public OperatorChannel {
   public:
     OperatorLine();
 
-    /// Shows the current prompt when it is new, and passes on what the operator did. False: the input has
-    /// ended.
+    /// Shows the current prompt if it is new, and passes on the operator's action. False at the end of the
+    /// input.
     bool look(commissioning::Guide &guide, double now_s) override;
     void show_finding(const commissioning::Step &step, const commissioning::Finding &finding) override;
     void show_failure(const std::string &) override {}
     void show_end(const commissioning::Guide &guide, const std::string &error) override;
 
   private:
-    /// In the language of the person; a script reads English.
+    /// Text in the operator's language; a script reads English.
     std::string shown(std::string_view english) const;
     void show(const commissioning::Guide &guide);
     bool read(double now_s);

@@ -19,11 +19,11 @@ struct NumberedAct {
     int prompt_number = 0;
     commissioning::Act act;
 };
-/// Nothing: the line is no act.
+/// Nothing if the line is not an action.
 std::optional<NumberedAct> read_act(std::string_view line);
 
-/// Standard output is for states alone during its lifetime and later: what the machine and its programs print
-/// goes to standard error. Create it before the machine.
+/// From its creation on, standard output contains only states. Output of the machine and its programs is
+/// redirected to standard error. Create it before the machine.
 class OperatorMessages final : public OperatorChannel {
   public:
     OperatorMessages();

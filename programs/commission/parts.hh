@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parts of `millwright commission`, each from its words to the exit status.
+// The parts of `millwright commission`. Each takes its words and returns the exit status.
 #pragma once
 
 #include <string>

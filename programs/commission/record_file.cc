@@ -21,14 +21,14 @@ std::string path_of(const std::string &folder) {
     return (fs::path(folder) / RECORD_FILE).string();
 }
 
-/// Ends of the keys of a motor that decide its travel.
+/// Endings of the keys of a motor that determine its travel.
 constexpr std::array GEOMETRY{".steps_per_turn", ".microsteps",      ".transmission",    ".way_per_turn",
                               ".pitch",          ".teeth",           ".belt_pitch",      ".module",
                               ".gear",           ".reverse",         ".counts_per_turn", ".channel",
                               ".reverse_output", ".reverse_encoder", ".step_pin",        ".dir_pin"};
 constexpr std::array GENERAL{"board", "drives", "kind", "units"};
 
-/// Whether a step depends on an answer. What was found with a simulated board says nothing about a real one.
+/// True if a step depends on an answer. A finding with a simulated board is not valid for a real one.
 bool dependsOn(const Finding &finding, std::string_view key) {
     const std::string_view step = finding.step;
     if (key == "board.simulated") {
@@ -203,7 +203,7 @@ Result<> write_record(const std::string &folder, const commissioning::Guide &gui
             }
             continue;
         }
-        // A finding that an earlier session has made keeps its date.
+        // A finding of an earlier session keeps its date.
         const bool is_old =
             old != record->end() && old->finding.fault == found->fault &&
             old->finding.after == found->after &&

@@ -32,7 +32,7 @@ struct Line {
     std::string title, result, values, date;
 };
 
-/// The line of a step: its finding, or that it has not been done.
+/// The line of a step: its finding, or that it was not done.
 Line line_of(const commissioning::Step &step, const ReportFacts &facts) {
     const auto found = std::ranges::find(facts.record, step.title, &Recorded::title);
     if (found == facts.record.end()) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The report of a machine for its acceptance: what was found, the values, a checklist and fields for
-// signatures.
+// The report of a machine for its acceptance: findings, values, a checklist and fields for signatures.
 #pragma once
 
 #include <string>
@@ -18,7 +17,7 @@ struct ReportFacts {
 };
 
 std::string report_text(const ReportFacts &facts);
-/// A page that prints on paper; it needs no other files.
+/// A printable page that needs no other files.
 std::string report_html(const ReportFacts &facts);
 
 }  // namespace mw::programs

@@ -60,7 +60,7 @@ bool isFolder(const options::Words &words) {
     return !words.empty() && words[0].find('=') == std::string::npos;
 }
 
-/// The recorded answers of a folder, with those of the command line instead of them.
+/// The recorded answers of a folder, replaced by those of the command line where given.
 Result<setup::Answers> answers_of(const options::Words &words, bool isRecorded) {
     setup::Answers answers;
     if (isRecorded) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Report from the recorded cycles of Ethernet boards: why packets arrive late, and the remedy.
+// Report from the recorded cycles of Ethernet boards: the reasons why packets arrive late, and the remedies.
 #pragma once
 
 #include <cstdint>

@@ -31,7 +31,7 @@ struct Order {
     const char *low, *high;
     const char *consequence;
     diagnostics::Severity severity = diagnostics::Severity::WARNING;
-    bool is_zero_none = false;  ///< the second is no limit when it is 0
+    bool is_zero_none = false;  ///< the second setting is not a limit if it is 0
 };
 
 void examine_order(const IniFile &ini, const std::string &section, const Order &order,
@@ -135,7 +135,7 @@ void examine_home_order(const IniFile &ini, const MachineConfig &machine, diagno
     }
 }
 
-/// Limits of an axis that exceed those of its joint. Comparable only where joints are axes.
+/// Reports limits of an axis that exceed those of its joint. Only for trivial kinematics.
 void examine_axis(const IniFile &ini, const MachineConfig &machine, int axis, diagnostics::Sink &sink) {
     const int joint = machine.joint_of_axis[static_cast<std::size_t>(axis)];
     if (!machine.isTrivial || joint < 0) {

@@ -95,7 +95,7 @@ int command_doctor(const std::vector<std::string> &arguments) {
     }
     catch_stop_signals();
     Counted counted;
-    // Discards the output of HAL files; findings are printed.
+    // Discards the output of HAL files, because findings are printed.
     const auto close = [](std::FILE *file) { std::fclose(file); };
     const std::unique_ptr<std::FILE, decltype(close)> out(::fdopen(::dup(STDOUT_FILENO), "w"), close);
     diagnostics::Sink sink([&](const diagnostics::Diagnostic &finding) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// All checks before a machine is started.
+// All checks before the start of a machine.
 #pragma once
 
 #include <csignal>
@@ -19,7 +19,7 @@ struct Scope {
     std::function<void(const machine::LoadedConfig &, diagnostics::Sink &)> display;
 };
 
-/// Reports findings to `sink`, which has errors when the machine would not start or not work.
+/// Reports findings to `sink`, which has errors if the machine would not start or not work.
 void examine(const std::string &ini, const Scope &scope, volatile std::sig_atomic_t &stop,
              diagnostics::Sink &sink);
 

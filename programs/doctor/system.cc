@@ -101,7 +101,7 @@ void examine_rights(const std::string &program, diagnostics::Sink &sink) {
     constexpr std::uint32_t IPC_LOCK = 1U << CAP_IPC_LOCK, SYS_NICE = 1U << CAP_SYS_NICE,
                             SYS_RESOURCE = 1U << CAP_SYS_RESOURCE;
     constexpr rlim_t PRIORITY = 85, MEMORY = rlim_t{512} << 20U;
-    // Root in a container may lack some.
+    // Root in a container may lack some capabilities.
     const std::uint64_t has = ::geteuid() == 0 ? effective_capabilities() : capabilities_of(program);
     const std::string setcap = "sudo setcap cap_sys_nice,cap_ipc_lock,cap_sys_resource+p " + program;
     const std::string remedy = setcap + "; or rtprio and memlock in /etc/security/limits.d";

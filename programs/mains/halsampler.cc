@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// halsampler [-c CHANNEL] [-n COUNT] [-t] [FILE]: prints what the component sampler has collected.
+// halsampler [-c CHANNEL] [-n COUNT] [-t] [FILE]: prints the data collected by the component sampler.
 #include "hal/tools/stream/programs.hh"
 #include "programs/mains/stream_main.hh"
 

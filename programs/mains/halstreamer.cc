@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// halstreamer [-c CHANNEL] [FILE]: feeds lines of values to the component streamer.
+// halstreamer [-c CHANNEL] [FILE]: sends lines of values to the component streamer.
 #include "hal/tools/stream/programs.hh"
 #include "programs/mains/stream_main.hh"
 

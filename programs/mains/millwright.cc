@@ -49,7 +49,8 @@ constexpr const char *USAGE =
     "Each command has its own --help.\n"
     "exit status: 0 done, 1 rejected or failed, 2 wrong usage\n";
 
-/// Becomes another of our programs; returns only when it is not there. `arguments`: its name and its words.
+/// Replaces this process by another of our programs; returns only if that does not exist. `arguments`: its
+/// name and its words.
 int start_beside(const std::string &program, char **arguments) {
     ::execv((mw::program_folder() + "/" + program).c_str(), arguments);
     mw::language::tell(

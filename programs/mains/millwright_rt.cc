@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright-rt: the realtime process of an instance. Started by halrun, realtime and millwright; not by
-// hand.
+// millwright-rt: the realtime process of an instance. Started by halrun, realtime and millwright, not by
+// users.
 #include <unistd.h>
 
 #include <csignal>

@@ -42,7 +42,7 @@ class Log {
         path_ = path;
         return path_.empty() ? mw::Result<>() : make();
     }
-    /// Closes the file. The next line starts a new file, because others may have moved this one.
+    /// Closes the file. The next line creates a new file, because other programs may have moved this one.
     mw::Result<> close() {
         auto made = path_.empty() || file_ != nullptr ? mw::Result<>() : make();
         file_.reset();
@@ -109,7 +109,7 @@ mw::Result<> run(const std::string &path) {
     constexpr timespec PERIOD{0, PERIOD_NS};
     while (stop_signal == 0 && !hal.host_status().end_reason().has_value()) {
         stand_in.step(monotonic_ns());
-        // Pins may be linked meanwhile: reads the value's address each time.
+        // Reads the value's address each time, because pins may be linked at any time.
         auto *const isReopening = static_cast<volatile bool *>(**reopen);
         *static_cast<volatile bool *>(**in_position) = stand_in.isInPosition();
         if (*isReopening) {

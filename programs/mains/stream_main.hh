@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The common part of the two stream programs: reading their words, joining the instance, ending on signals,
+// The common part of the two stream programs: parsing arguments, joining the instance, ending on signals,
 // reporting.
 #pragma once
 

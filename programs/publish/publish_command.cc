@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright publish: the machine's values for a shop, by Sparkplug B and MTConnect.
+// millwright publish: publishes the machine's values to a shop, by Sparkplug B and MTConnect.
 #include <poll.h>
 
 #include <algorithm>
@@ -31,10 +31,10 @@ namespace {
 
 using namespace publish;
 
-/// Longest sleep between two checks of signals; period of the broker's thread.
+/// Maximum sleep between two checks of signals; period of the broker's thread.
 constexpr auto SLEEP = std::chrono::milliseconds(250), BROKER_TICK = std::chrono::milliseconds(50);
 constexpr auto STREAM_TICK = std::chrono::milliseconds(10), HTTP_TICK = std::chrono::milliseconds(100);
-/// Between two writes of the log to the disk, which only a power cut makes necessary. [s]
+/// Interval of syncs of the log, which are only necessary for power cuts. [s]
 constexpr double SYNC_S = 5;
 
 struct PublishWords {
@@ -83,14 +83,14 @@ Result<client::Viewer> attach(const std::string &instance, const std::string &in
     return viewer;
 }
 
-/// The file of the next bdSeq number.
+/// The file with the next bdSeq number.
 std::uint64_t next_bdseq(const std::string &file) {
     constexpr std::size_t MOST = 32;
     const auto text = read_file(file, MOST);
     return text.has_value() ? parse_uint(trim(*text)).value_or(0) : 0;
 }
 
-/// The file of the last message that was published.
+/// The file with the last published message.
 MachineReader::Mark read_mark(const std::string &file) {
     constexpr std::size_t MOST = 64;
     const auto text = read_file(file, MOST);
@@ -100,7 +100,7 @@ MachineReader::Mark read_mark(const std::string &file) {
                : MachineReader::Mark{};
 }
 
-/// A thread that a program ends by a flag.
+/// A thread that a program ends with a flag.
 class Worker {
   public:
     template <class Run>
@@ -158,7 +158,7 @@ Result<std::unique_ptr<screen::Server>> listen(const Settings &settings, const S
     return screen::Server::listen(options);
 }
 
-/// A clock that is set back by less is corrected in passing.
+/// If a clock was set back by less than this, it is corrected gradually.
 constexpr TimeMs MS_PER_S = 1000, MOST_AHEAD_MS = 60 * MS_PER_S;
 
 void sleep_until(double end_s) {
@@ -169,7 +169,7 @@ void sleep_until(double end_s) {
     }
 }
 
-/// Until a signal.
+/// Runs until a signal.
 void read_machine(MachineReader &reader, const Settings &settings, LiveData *data) {
     std::string trouble;
     bool isAhead = false;

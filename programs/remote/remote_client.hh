@@ -8,8 +8,8 @@
 
 namespace mw::programs {
 
-/// Commands over TCP come from programs that are not authenticated as the machine's user: their authority is
-/// OPERATE (docs/integrator/security.md).
+/// Commands over TCP are from programs that are not authenticated as the machine's user, so their authority
+/// is OPERATE (docs/integrator/security.md).
 inline Result<client::Client> connect_to_operate(const std::string &instance) {
     auto client = client::Client::connect(instance);
     if (client.has_value()) {

@@ -71,7 +71,7 @@ Result<> serve(TextServerWords &words, TextServiceMaking make, diagnostics::Sink
     }
     (*server)->run(
         [&shared, &service] {
-            // A status that cannot be read means that the machine is ending.
+            // If the status cannot be read, the machine is ending.
             const bool up = stop_signal == 0 && shared.isMachineAlive() && shared.read().has_value();
             if (up) {
                 service->step(shared.status());

@@ -18,8 +18,8 @@ namespace mw::programs {
 
 /// The command line of a program that serves lines of text.
 struct TextServerWords {
-    std::string program = {}, what = {};  ///< its name; for --help
-    bool has_dialects = false;            ///< --dialect is known
+    std::string program = {}, what = {};  ///< name and purpose of the program, for --help
+    bool has_dialects = false;            ///< the option --dialect exists
     rsh::Settings settings = {};
     rsh::ServerSettings server = {};
     std::string ini = {}, dialect = "2.10";
@@ -41,7 +41,7 @@ class TextService {
     virtual void step(const messages::MachineStatus &) {}
 };
 
-/// Objects that a service uses; they outlive the service.
+/// Objects that a service uses; they must outlive the service.
 struct TextMachine {
     const rsh::Settings &settings;
     rsh::SharedView &view;

@@ -17,12 +17,12 @@ using machine::Deviation;
 using machine::LimitedCoordinate;
 using Type = LimitedCoordinate::Type;
 
-constexpr int VERSION = 1;  ///< of the document: higher when a field changes its meaning
+constexpr int VERSION = 1;  ///< version of the document; increased when a field changes its meaning
 
 struct DerivativeText {
     const char *name;
-    const char *unit;   ///< after the unit of the coordinate
-    const char *field;  ///< the same in names of fields
+    const char *unit;   ///< suffix of the coordinate's unit
+    const char *field;  ///< as above, for names of fields
 };
 constexpr std::array<DerivativeText, machine::DERIVATIVES> DERIVATIVE_TEXTS{
     {{"velocity", "/s", "per_s"}, {"acceleration", "/s2", "per_s2"}, {"jerk", "/s3", "per_s3"}}};
@@ -82,7 +82,7 @@ Json use_json(const CertificateReport &report, const CoordinateUse &use) {
     return json;
 }
 
-/// Null when there was none.
+/// Null if there was none.
 Json deviation_json(const CertificateReport &report, const Deviation &deviation) {
     if (deviation.distance() == 0) {
         return nullptr;

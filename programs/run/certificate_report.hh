@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The certificate of motion of a run: as a JSON file and as a table for people (docs/user/certificate.md).
+// The certificate of motion of a run: as a JSON file, and as a table for persons (docs/user/certificate.md).
 #pragma once
 
 #include <cstdint>
@@ -25,11 +25,11 @@ struct CertificateReport {
 
 /// The JSON document.
 std::string certificate_json(const CertificateReport &report);
-/// Replaces the file by the JSON document; it is the old or the new one at any time.
+/// Replaces the file by the JSON document atomically.
 Result<> write_certificate(const CertificateReport &report, const std::string &path);
-/// A line for each axis, joint and norm with limits, for the path, and for each limit that is exceeded.
+/// A line for each axis, joint and norm with limits, for the path, and for each exceeded limit.
 std::string certificate_table(const CertificateReport &report);
-/// The largest use of any limit, and the path deviation, in one line.
+/// The maximum use of a limit, and the path deviation, in one line.
 std::string certificate_line(const CertificateReport &report);
 
 }  // namespace mw::programs

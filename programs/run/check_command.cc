@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright check: interprets a program for a machine and checks its moves, moving nothing.
+// millwright check: interprets a program for a machine and checks its moves without motion.
 #include <cstdio>
 #include <optional>
 

@@ -28,7 +28,7 @@ Keyboard::Keyboard() {
 }
 
 Keyboard::~Keyboard() {
-    // The kernel stops a program in the background that changes its terminal.
+    // The kernel stops a background program that changes its terminal.
     if (taken_ && isThere()) {
         ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
     }

@@ -8,11 +8,11 @@
 
 namespace mw::programs {
 
-/// Reads single keys from the terminal during its lifetime: no echo, no end of line needed, no suspending by
-/// Ctrl-Z (task must not stop while a machine moves). The destructor restores the terminal.
+/// Reads single keys from the terminal during its lifetime: without echo, without Enter, and without
+/// suspending by Ctrl-Z (task must not stop while a machine moves). The destructor restores the terminal.
 class Keyboard {
   public:
-    /// Standard input is a terminal and this program is in its foreground.
+    /// True if standard input is a terminal and this program is in its foreground.
     static bool isThere();
 
     Keyboard();
@@ -20,8 +20,8 @@ class Keyboard {
     Keyboard(const Keyboard &) = delete;
     Keyboard &operator=(const Keyboard &) = delete;
 
-    /// The next key; nothing when there is none. Does not block. Ignores keys that send more than one
-    /// character (arrows).
+    /// The next key; nothing if there is none. Does not block. Ignores keys that send several characters
+    /// (arrows).
     std::optional<char> read();
 
   private:

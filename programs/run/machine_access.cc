@@ -12,24 +12,24 @@ namespace mw::programs {
 namespace {
 
 constexpr std::int64_t STOP_TIMEOUT_NS = 30000000000;
-/// A tap or thread pauses only at its end; maximum wait.
+/// Maximum wait, because a tap or thread pauses only at its end.
 constexpr std::int64_t HOLD_TIMEOUT_NS = 1000000000;
 /// A client that hangs for longer loses the exclusive right to operate.
 constexpr double LEASE_S = 5.0;
 constexpr std::int64_t RENEW_EVERY_NS = 1000000000;
-/// Task's cycles take milliseconds.
+/// Maximum wait for an answer; task's cycles take milliseconds.
 constexpr double ANSWER_S = 5.0;
 constexpr double CYCLE_S = 0.1;
 /// HAL files and their programs may take long.
 constexpr auto START_TIME = std::chrono::seconds(30);
 
-/// From its current status; false when there is none.
+/// From the current status; false if there is none.
 bool isMoving(client::Client &client) {
     return client.read_status().has_value() && client.status().trajectory.isEnabled &&
            !client.status().trajectory.isInPosition;
 }
 
-/// The axes are stopped within their path: only a resume moves them.
+/// True if the axes are stopped within their path, so that only a resume moves them.
 bool isHeldAtRest(client::Client &client) {
     return client.read_status().has_value() && client.status().trajectory.isPaused &&
            client.status().trajectory.current_velocity == 0.0;
@@ -115,7 +115,8 @@ Result<> RunningMachine::take_over() {
     }
     operate_right_owned_ = true;
     renewed_ns_ = now_ns();
-    status = check_idle();  // another client may have started something before we had the right
+    // another client may have started something before this one had the right to operate
+    status = check_idle();
     if (!status.has_value()) {
         give_back();
     }
@@ -155,7 +156,7 @@ void stop_motion(MachineAccess &machine) {
 }
 
 void switch_off(MachineAccess &machine) {
-    // An abort switches the spindle off at once, while the tool still moves through the part.
+    // An abort would switch the spindle off at once, while the tool still moves through the part.
     const bool running = machine.client().read_status().has_value() &&
                          machine.client().status().task.interp_state != messages::InterpState::IDLE;
     if (running && machine.client().post(messages::PauseProgram{}).has_value()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine that runs a program: made in this process, or running in another.
+// The machine that runs a program: created in this process, or running in another process.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ class MachineAccess {
   public:
     virtual ~MachineAccess() = default;
 
-    /// Returns after the next task cycle: runs it, or waits for it.
+    /// Runs a task cycle, or waits for the next one.
     virtual void cycle() = 0;
     virtual std::int64_t now_ns() const = 0;
     /// An error when the machine cannot continue. Check in every cycle.
     virtual Result<> health() const = 0;
     virtual client::Client &client() = 0;
-    /// Other clients may operate the machine as well.
+    /// True if other clients may also operate the machine.
     virtual bool isShared() const = 0;
 };
 
@@ -44,13 +44,13 @@ class OwnMachine final : public MachineAccess {
 /// for any reason.
 class RunningMachine final : public MachineAccess {
   public:
-    /// Null when no machine of that instance runs. An error when the running one cannot be joined: it was
-    /// started from another file than `ini`, or ends with its own program.
+    /// Null if no machine of that instance runs. An error if the running machine cannot be joined, because it
+    /// was started from another file than `ini` or ends with its own program.
     static Result<std::unique_ptr<RunningMachine>> find(const std::string &instance, const std::string &ini);
     ~RunningMachine() override;
 
     /// Requests the exclusive right to operate and renews it in each cycle, until give_back(). Rejected while
-    /// something runs or moves, or another client has it.
+    /// something runs or moves, or another client has the right.
     Result<> take_over();
     void give_back();
 
@@ -71,10 +71,10 @@ class RunningMachine final : public MachineAccess {
     std::int64_t renewed_ns_ = 0;
 };
 
-/// Aborts everything and waits until the machine is stopped.
+/// Aborts all work and waits until the machine is stopped.
 void stop_motion(MachineAccess &machine);
-/// Pauses the program, so that the axes stop with the spindle on, then stops as stop_motion(), then opens the
-/// e-stop chain: spindles, coolant and amplifiers are off.
+/// Pauses the program, so that the axes stop with the spindle on; then stops as stop_motion(), and opens the
+/// e-stop chain, which switches spindles, coolant and amplifiers off.
 void switch_off(MachineAccess &machine);
 
 }  // namespace mw::programs

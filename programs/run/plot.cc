@@ -86,7 +86,7 @@ void draw_moves(const charts::Canvas &canvas, const std::vector<PathPoint> &poin
             continue;
         }
         const Flat from = scale(project(points[i - 1])), to = scale(project(points[i]));
-        // Points nearer than a third of a pixel add nothing to the picture.
+        // Points at a distance below a third of a pixel are omitted.
         if (down && std::hypot(to.x - last.x, to.y - last.y) < 0.35) {
             continue;
         }
@@ -124,7 +124,7 @@ void draw_axes(const charts::Canvas &canvas, const Scale &scale, const Window &w
     canvas.text(window.left, window.top - 8, upwards, 13);
 }
 
-/// Vertical feed moves: a point as seen from above.
+/// Vertical feed moves, as points seen from above.
 std::vector<Flat> holes(const std::vector<PathPoint> &points) {
     std::vector<Flat> found;
     for (std::size_t i = 1; i < points.size(); ++i) {

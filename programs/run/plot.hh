@@ -11,9 +11,9 @@
 
 namespace mw::programs {
 
-/// Writes `path` (.png or .svg by its extension). A mill is drawn from above, with holes marked, and from an
-/// angle; a lathe (no Y, or [DISPLAY]LATHE) with Z to the right and X upwards, with the centre line. Machine
-/// coordinates.
+/// Writes `path` (.png or .svg by its extension). A mill is drawn from above, with holes marked, and in
+/// perspective; a lathe (no Y, or [DISPLAY]LATHE) with Z to the right and X upwards, with the centre line.
+/// Machine coordinates.
 Result<> plot_path(const std::vector<machine::PathPoint> &points, const machine::MachineConfig &machine,
                    const std::string &program, const std::string &path);
 

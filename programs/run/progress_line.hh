@@ -8,7 +8,7 @@
 
 namespace mw::programs {
 
-/// A line of standard error that is updated twice a second; no effect if that is not a terminal.
+/// A line on standard error that is updated twice a second; no effect if it is not a terminal.
 class ProgressLine {
   public:
     ProgressLine();

@@ -13,14 +13,14 @@
 
 namespace mw::programs {
 
-/// One thread; during its lifetime it is the only listener of the machine's moves.
+/// One thread. During its lifetime it is the only listener of the machine's moves.
 class Recorder {
   public:
     Recorder(machine::Machine &machine, const machine::MachineConfig &config);
 
     Result<> open_trace(const std::string &path, const machine::MachineConfig &config);
     void start();
-    /// Once a task cycle.
+    /// Called once in each task cycle.
     void drain();
     /// An error when the trace is incomplete.
     Result<> finish(machine::ProgramEnd end);

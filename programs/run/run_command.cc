@@ -51,7 +51,7 @@ class Run {
     }
 
   private:
-    /// On a machine for this program alone.
+    /// Runs on a machine created only for this program.
     int run_here() {
         if (!check(0)) {
             return 1;
@@ -101,13 +101,13 @@ class Run {
         return written.has_value();
     }
 
-    /// On a running machine, which continues afterwards.
+    /// Runs on a running machine, which continues afterwards.
     int run_there(RunningMachine &machine) {
         RunSession person(machine, loaded_.machine, sink_, operator_options());
         if (!isForClients() || !check(person.status().tool.in_spindle)) {
             return 1;
         }
-        words_.program = whole_path(words_.program);  // another process opens it
+        words_.program = whole_path(words_.program);  // absolute, because another process opens it
         auto status = isStarted(person);
         status = status.has_value() ? machine.take_over() : status;
         if (status.has_value()) {
@@ -177,7 +177,7 @@ class Run {
         return option == nullptr;
     }
 
-    /// `tool` is in the spindle, 0: none.
+    /// `tool` is the tool in the spindle, 0: none.
     bool check(int tool) {
         auto tools = machine::read_tools(loaded_.machine, sink_);
         if (!tools.has_value()) {
@@ -224,7 +224,7 @@ class Run {
                                : machine::make_virtual_machine(parts, options);
     }
 
-    /// Starts, after confirmation by a person if one is asked.
+    /// Starts, after confirmation by a person if required.
     Result<> isStarted(RunSession &person) {
         if (stop_signal != 0) {
             return fail("stopped by " + stop_signal_name() + " before the start");
@@ -294,7 +294,7 @@ int command_run(const std::vector<std::string> &arguments) {
     if (loaded == nullptr) {
         return 1;
     }
-    // Virtual time may wait for the reader of the output; a machine must not.
+    // Virtual time may wait for the reader of the output, a machine must not.
     const std::string why = words->realtime ? OutputRelay::begin() : "";
     if (!why.empty()) {
         sink.warning("a stopped terminal can delay the machine: " + why);

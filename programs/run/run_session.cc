@@ -26,7 +26,7 @@ RunSession::RunSession(MachineAccess &machine, const machine::MachineConfig &con
 
 void RunSession::cycle() {
     machine_.cycle();
-    // If task has died during it, health() reports it.
+    // If task has died in this time, health() reports it.
     static_cast<void>(machine_.client().read_status());
 }
 
@@ -127,7 +127,8 @@ Result<> RunSession::wait_for(const Result<client::Serial> &posted, const std::s
             return {};
         }
         if (outcome.progress != messages::Progress::STARTED) {
-            // As a message to the operator; on a shared machine it may be about the work of others.
+            // Printed as a message to the operator; on a shared machine it may be about the work of other
+            // clients.
             const bool reported = !last_error_.empty() && !machine_.isShared();
             const std::string &reason = outcome.reason;
             return std::unexpected(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Does the work of an operator: switches the machine on, homes it, opens and runs a program and watches it.
-// Leaves the machine switched on and homed if it was so before.
+// If the machine was on and homed before, it remains so.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 namespace mw::programs {
 
 struct RunSessionFigures {
-    double cycle_time_s = 0;  ///< of the program, in machine time
+    double cycle_time_s = 0;  ///< time of the program, in machine time
     double wall_time_s = 0;
     std::uint64_t blocks = 0;
     int stops_passed = 0;  ///< M0, M1 and M60
@@ -21,7 +21,7 @@ struct RunSessionFigures {
 };
 
 struct ProgramSwitches {
-    bool optional_stop_on = true;  ///< M1 stops
+    bool optional_stop_on = true;  ///< M1 stops the program
     bool block_delete_on = true;   ///< lines that begin with / are skipped
 };
 
@@ -36,7 +36,7 @@ class RunSession {
     RunSession(MachineAccess &machine, const machine::MachineConfig &config, diagnostics::Sink &sink,
                const RunSessionOptions &options);
 
-    /// Asks the person at the terminal; false: declined, or no person.
+    /// Asks the person at the terminal; false if the person declines, or there is none.
     bool confirm(const std::string &question) { return panel_.confirm(question); }
 
     Result<> switch_on();
@@ -44,24 +44,24 @@ class RunSession {
     Result<> home_all();
     Result<> set_switches(const ProgramSwitches &switches);
     Result<> open_program(const std::string &path);
-    /// Runs to the end, from a line (0: the first). `each_cycle` is called after every task cycle.
+    /// Runs to the end, beginning at a line (0: the first). `each_cycle` is called after every task cycle.
     Result<> run_program(int from_line, const std::function<void()> &each_cycle);
-    /// Stops all motion; the machine stays on.
+    /// Stops all motion; the machine remains on.
     void stop();
     /// Stops all motion and switches the machine off.
     void switch_off();
 
-    /// As of the last cycle.
+    /// Status of the last cycle.
     const messages::MachineStatus &status() const { return machine_.client().status(); }
 
     RunSessionFigures figures() const;
 
   private:
     Result<> ask(const messages::Command &command, const std::string &what);
-    /// Runs cycles until the request ends. The error names what was awaited.
+    /// Runs cycles until the request ends. The error names the missing condition.
     Result<> wait_for(const Result<client::Serial> &posted, const std::string &what,
                       const std::function<void()> &each_cycle);
-    /// One task cycle, and the status after it.
+    /// Runs one task cycle, and reads the status after it.
     void cycle();
     void show_messages();
     bool hasProgress();

@@ -10,10 +10,10 @@
 namespace mw::programs {
 namespace {
 
-/// Fraction of the checking time after which time calculation is abandoned for reading further.
+/// Fraction of the checking time after which the time calculation is abandoned in favour of further reading.
 constexpr double SHARE_FOR_TIMES = 0.6;
 
-/// Reports errors as errors while the course of the program is certain, later as warnings.
+/// Reports errors as errors while the course of the program is certain, and as warnings later.
 class Judge {
   public:
     explicit Judge(diagnostics::Sink &sink) : sink_(sink) {}
@@ -53,7 +53,7 @@ StartCheck check_before_start(const machine::MachineConfig &machine, const std::
     ProgressLine progress;
     diagnostics::Sink found([&judge](const diagnostics::Diagnostic &one) { judge.take(one); });
     machine::CheckOptions check;
-    check.statements = 0;  // a program may run for ever: other limits end the check
+    check.statements = 0;  // a program may be endless; other limits end the check
     check.block_delete_on = options.block_delete_on;
     check.progress = [&](const gcode::PreviewProgress &now) {
         progress.show(now);

@@ -18,7 +18,7 @@ struct Summary {
     RunSessionFigures run;
     /// Nothing for a machine in another process.
     std::optional<machine::RunFigures> path{};
-    std::string certificate{};  ///< its table; empty for a machine in another process
+    std::string certificate{};  ///< table of the certificate; empty for a machine in another process
     std::optional<machine::RealtimeFigures> realtime{};
     bool was_realtime;
     const StartCheck &check;

@@ -142,7 +142,7 @@ void TerminalPanel::look_at_stop() {
     }
 }
 
-/// Task's message describes the approach.
+/// Called when task's message describes the approach.
 void TerminalPanel::look_at_approach() {
     const std::uint64_t proposed = status().approach.number;
     if (proposed == 0 || proposed == approach_told_) {
@@ -183,7 +183,7 @@ void TerminalPanel::clear_line() {
     }
 }
 
-/// Between moves motion has no line.
+/// Motion has no line between moves.
 int TerminalPanel::line_reached() {
     const messages::MachineStatus &status = this->status();
     const int line = status.task.isStoppedByProgram ? status.task.stop_line : status.task.motion_line;

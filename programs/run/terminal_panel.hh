@@ -11,11 +11,11 @@
 
 namespace mw::programs {
 
-/// How a program's requests to a person are answered.
+/// How requests of a program to a person are answered.
 enum class Attendance : std::uint8_t {
     SIMULATED,  ///< program stops are passed at once, and reported
-    TERMINAL,   ///< by a person at this terminal with keys, or by HAL pins
-    NOBODY,     ///< only by HAL pins: without them a stop lasts until a signal arrives
+    TERMINAL,   ///< by a person with keys at this terminal, or by HAL pins
+    NOBODY,     ///< only by HAL pins; without them a stop lasts until a signal arrives
 };
 
 /// One thread; step() does not block.
@@ -31,17 +31,17 @@ class TerminalPanel {
     void begin_program(int lines);
     void end_program();
 
-    /// Once a task cycle: handles keys and program stops, and updates the line.
+    /// Called once in each task cycle: handles keys and program stops, and updates the line.
     void step();
     /// Shows a message for the operator above the line.
     void show(const client::Client::Message &message);
 
-    /// The program waits for a person, so the timeout for progress is suspended.
+    /// True while the program waits for a person, so that the timeout for progress is suspended.
     bool isWaitingForPerson() const;
     int stops_passed() const { return stops_passed_; }
 
   private:
-    /// Of the last cycle, as read by the machine's owner.
+    /// Status of the last cycle, as read by the machine's owner.
     const messages::MachineStatus &status() const { return machine_.client().status(); }
     void take_key(char key);
     void post(const messages::Command &command);
@@ -60,8 +60,8 @@ class TerminalPanel {
     std::optional<Keyboard> keyboard_;
     bool has_line_;  ///< standard error is a terminal
     bool running_ = false;
-    std::uint64_t stops_told_ = 0;     ///< as counted by Status::stops
-    std::uint64_t approach_told_ = 0;  ///< number of the proposal
+    std::uint64_t stops_told_ = 0;     ///< number of stops reported, as counted by Status::stops
+    std::uint64_t approach_told_ = 0;  ///< number of the reported proposal
     int stops_passed_ = 0;
     int lines_ = 0, line_ = 0;
     std::chrono::steady_clock::time_point last_written_{}, last_key_{};

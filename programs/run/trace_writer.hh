@@ -19,7 +19,7 @@ class TraceWriter {
     static Result<TraceWriter> create(const std::string &path, unsigned axis_mask, int num_joints);
 
     void write(const motion::TraceSample &sample);
-    /// Flushes and closes; an error when anything could not be written.
+    /// Flushes and closes; an error if data could not be written.
     Result<> close();
 
   private:

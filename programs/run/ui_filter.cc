@@ -33,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t MOST_TOLD = 2000;  ///< of its stderr output [bytes]
+constexpr std::size_t MOST_TOLD = 2000;  ///< maximum size of the stderr output [bytes]
 
 std::string last_error() {
     return std::strerror(errno);
@@ -42,7 +42,7 @@ std::string last_error() {
 /// A program in a separate process group, so that its children end with it.
 class Child {
   public:
-    /// Its output goes to `output`.
+    /// Its output is written to `output`.
     Result<> start(const FilterRun &run, int output) {
         std::array<int, 2> ends{-1, -1};
         if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -68,7 +68,7 @@ class Child {
         std::array<std::string, 5> words{"/bin/sh", "-c", run.command + " \"$1\"", "filter", run.input};
         std::array<char *, 6> argv{};
         std::ranges::transform(words, argv.begin(), [](std::string &word) { return word.data(); });
-        std::string mark = "AXIS_PROGRESS_BAR=1";  // shows filters that progress is displayed
+        std::string mark = "AXIS_PROGRESS_BAR=1";  // indicates to filters that progress is displayed
         std::vector<char *> environment{mark.data()};
         for (char **one = environ; *one != nullptr; ++one) {
             environment.push_back(*one);
@@ -102,7 +102,7 @@ class Child {
             ::kill(-pid_, number);
         }
     }
-    /// Its stderr output, after at most 50 ms.
+    /// Its stderr output; waits at most 50 ms.
     std::string listen() {
         constexpr int WAIT_MS = 50;
         pollfd look{errors_, POLLIN, 0};
@@ -202,7 +202,7 @@ Result<> fill(const FilterRun &run, int output, screen::PieceQueue &pieces) {
         told.take(child.listen());
         status = child.end();
         if (!asked.has_value() && (isTooLarge(output) || pieces.isCancelled())) {
-            child.signal_all(SIGTERM);  // and killed if it does not end
+            child.signal_all(SIGTERM);  // ends it, and kills it if it does not end
             asked = Clock::now();
         } else if (asked.has_value() && Clock::now() - *asked > PATIENCE) {
             child.signal_all(SIGKILL);
@@ -260,7 +260,7 @@ void run_filter(const FilterRun &run, screen::PieceQueue &pieces) {
     std::error_code error;
     const fs::path folder = fs::path(run.output).parent_path();
     fs::create_directories(folder, error);
-    fs::permissions(folder, fs::perms::owner_all, error);  // no other user may put a program there
+    fs::permissions(folder, fs::perms::owner_all, error);  // so that no other user can put a program there
     if (error) {
         refuse(fmt::format("cannot make '{}' private: {}", folder.string(), error.message()));
         return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// [FILTER]: programs that make G-code out of other files, for the operator's screen.
+// [FILTER]: programs that convert other files to G-code, for the operator's screen.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace mw::programs {
 /// Commands by file name extension, in lower case with the dot.
 std::map<std::string, std::string> filters_of(const ini::IniFile &ini);
 
-/// Folder of programs made by filters, which outlive the server: for this user and machine.
+/// Folder for programs created by filters, which outlive the server; for this user and machine.
 std::string filtered_folder(const std::string &instance);
 
 struct FilterRun {
@@ -24,8 +24,8 @@ struct FilterRun {
     std::string output;   ///< path of the program, replaced atomically on success
 };
 
-/// Runs it to its end, or until there is no reader. `pieces` receives lines of JSON: {"progress": 40} for the
-/// filter's FILTER_PROGRESS=40, then {"made": "/path"} or {"error": "..."}. Blocks.
+/// Runs the filter to its end, or until there is no reader. `pieces` receives lines of JSON: {"progress": 40}
+/// for the filter's FILTER_PROGRESS=40, then {"made": "/path"} or {"error": "..."}. Blocks.
 void run_filter(const FilterRun &run, screen::PieceQueue &pieces);
 
 }  // namespace mw::programs

@@ -38,7 +38,7 @@
 namespace mw::programs {
 namespace {
 
-/// Interval for checking outcomes while a screen is open, and the machine otherwise.
+/// Interval of checks for outcomes while a screen is open, and for the machine otherwise.
 constexpr auto TICK = std::chrono::milliseconds(10), IDLE_TICK = std::chrono::milliseconds(100);
 
 struct UiWords {
@@ -189,7 +189,7 @@ void run(screen::Server &server, const UiWords &words, const machine::LoadedConf
     hal_looks.end();
 }
 
-/// Without a screen the server is useful only for programs.
+/// Prints the address; without a screen the server is useful only for programs.
 void print_address(const std::string &machine, int port, const std::string &folder, diagnostics::Sink &sink) {
     if (const auto found = check_screen(folder); !found.has_value()) {
         sink.error(found.error());

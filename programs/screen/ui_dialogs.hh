@@ -10,8 +10,8 @@
 
 namespace mw::programs {
 
-/// The messages in order. One without text, type or pin is reported to `sink` as an error, with its position,
-/// and omitted.
+/// The messages in order. A message without text, type or pin is reported to `sink` as an error with its
+/// position, and omitted.
 std::vector<screen::DialogFacts> dialog_facts(const ini::IniFile &ini, diagnostics::Sink &sink);
 
 }  // namespace mw::programs

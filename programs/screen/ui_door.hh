@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Access from other computers as selected by the words of `millwright ui`.
+// Access from other computers, as selected by the arguments of `millwright ui`.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace mw::programs {
 struct DoorWords {
     std::string listen;              ///< ADDRESS or ADDRESS:PORT, IPv6 addresses in brackets; empty: none
     std::vector<std::string> names;  ///< additional names of this computer
-    std::string unprotected;         ///< role of every connection, without TLS and token; empty: protected
+    std::string unprotected;         ///< role of all connections, without TLS and token; empty: protected
 };
 
 /// Folder of the user: $XDG_CONFIG_HOME/millwright/screen, or ~/.config/millwright/screen.
@@ -24,16 +24,17 @@ Result<std::string> secrets_folder();
 /// there if missing.
 Result<std::optional<screen::RemoteDoor>> remote_door(const DoorWords &words, const std::string &folder);
 
-/// For other users of this computer, from `folder`; none, with a warning, if they cannot be read or created.
+/// Tokens for other users of this computer, from `folder`; none, with a warning, if they cannot be read or
+/// created.
 screen::Tokens local_tokens(const std::string &folder, diagnostics::Sink &sink);
 
-/// Reports why connections from this computer have the role STATUS, even those of the server's user.
+/// Reports why connections from this computer have the role STATUS, including those of the server's user.
 void report_unknown(const std::string &why, diagnostics::Sink &sink);
 
 /// Text for a screen with the role STATUS: how to get other roles.
 std::string status_note(int port, const std::string &folder);
 
-/// Addresses to open on another computer, one line for each role: printed for the person who started the
+/// Addresses to open on another computer, one line for each role, printed for the person who started the
 /// server.
 std::string door_text(const screen::RemoteDoor &door, int port, const std::string &folder);
 

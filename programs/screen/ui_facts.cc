@@ -24,7 +24,7 @@ constexpr double MM_PER_INCH = 25.4;
 /// Whether a key may be 0.
 enum class Least : std::uint8_t { ABOVE_0, FROM_0 };
 
-/// A number of the INI file above 0, or from 0; a warning if it is not valid.
+/// A number of the INI file above 0, or at least 0; a warning if it is not valid.
 std::optional<double> number(const ini::IniFile &ini, const char *section, const char *key,
                              diagnostics::Sink &sink, Least least = Least::ABOVE_0) {
     const ini::IniEntry *entry = ini.find(section, key);
@@ -175,7 +175,7 @@ struct JogSpeeds {
     double highest = 1, preset = 1;
 };
 
-/// [DISPLAY] before [TRAJ]. Jogs are limited to the maximum speed of axes of their type.
+/// Speeds from [DISPLAY], else from [TRAJ]. Jogs are limited to the maximum speed of axes of their type.
 JogSpeeds jog_speeds(const machine::LoadedConfig &loaded, bool is_angular, diagnostics::Sink &sink) {
     const ini::IniFile &ini = loaded.ini;
     const char *const highest_key = is_angular ? "MAX_ANGULAR_VELOCITY" : "MAX_LINEAR_VELOCITY";

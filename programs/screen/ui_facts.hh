@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The facts about the machine that a screen needs, from its INI file.
+// The data about the machine that a screen needs, from its INI file.
 #pragma once
 
 #include <string>
@@ -21,8 +21,8 @@ screen::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnost
 std::vector<screen::Increment> parse_increments(std::string_view text, double unit_mm,
                                                 std::vector<std::string> &bad);
 
-/// [DISPLAY]CYCLE_TIME: seconds, or milliseconds for values from 1 on; 20 to 200 ms, 50 ms if it is not set.
-/// [s]
+/// [DISPLAY]CYCLE_TIME: seconds, or milliseconds for values of 1 or more; 20 to 200 ms, 50 ms if it is not
+/// set. [s]
 double status_period_s(const ini::IniFile &ini, diagnostics::Sink &sink);
 
 /// Drawing style of program paths.

@@ -44,16 +44,16 @@ class PathReaders {
     /// The chunks of docs/reference/api.md, while the program is read; an error when too many are being read.
     Result<std::shared_ptr<screen::PieceQueue>> read(const std::string &path,
                                                      const screen::Requester &by = {});
-    /// Another job that produces pieces, counted as a reader.
+    /// Another job that produces pieces; it counts as a reader.
     Result<std::shared_ptr<screen::PieceQueue>> run(std::function<void(screen::PieceQueue &)> job,
                                                     const screen::Requester &by = {}) {
         return begin([job = std::move(job)](Reader &reader) { job(*reader.pieces); }, by);
     }
-    /// Times of its moves, from the planner.
+    /// Times of the program's moves, from the planner.
     Result<std::shared_ptr<screen::PieceQueue>> read_times(const std::string &path,
                                                            const screen::TimeOverrides &overrides,
                                                            const screen::Requester &by = {});
-    /// Cancels all readers soon.
+    /// Requests all readers to end.
     void cancel();
 
   private:
@@ -68,7 +68,7 @@ class PathReaders {
     Result<> check_count(const screen::Requester &by) const;
     Result<std::shared_ptr<screen::PieceQueue>> begin(std::function<void(Reader &)> job,
                                                       const screen::Requester &by);
-    /// It has no receiver any more, or a limit is exceeded. [its thread]
+    /// True if it has no receiver, or a limit is exceeded. [its thread]
     bool isToEnd(Reader &reader) const;
     std::string late_text(const std::string &path) const;
     void read_all(Reader &reader, const std::string &path) const;

@@ -28,7 +28,7 @@ std::optional<std::string> text_of(const fs::path &path) {
     return text.has_value() ? std::optional(std::move(*text)) : std::nullopt;
 }
 
-/// Names of the files that were generated last.
+/// Names of the files of the last generation.
 std::set<std::string> generated_names(const fs::path &folder) {
     std::set<std::string> names;
     std::error_code error;
@@ -119,7 +119,7 @@ class Changer {
     std::vector<Planned> planned_;
 };
 
-/// Lines with a mark in front.
+/// Lines with a mark at their beginning.
 std::string marked(const std::string &text, const char *mark) {
     std::string all;
     std::string_view rest = text;
@@ -148,7 +148,7 @@ setup::Answers changed_answers(const setup::Answers &recorded, const setup::Answ
     for (const auto &[key, value] : given) {
         all[key] = value;
     }
-    // Each round may change which questions follow: those of the board, then those of its terminals.
+    // Each round may change the next questions: first those of the board, then those of its terminals.
     constexpr int ROUNDS = 5;
     const auto before = setup::questions(recorded);
     for (int round = 0; round < ROUNDS; ++round) {

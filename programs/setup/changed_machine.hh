@@ -15,15 +15,15 @@ namespace mw::programs {
 /// The answers that are recorded in the folder of a machine.
 Result<setup::Answers> recorded_answers(const std::string &folder);
 
-/// The answers of a machine with the changes in `given`. Answers that were presets follow a preset that
-/// changes with them; those to questions that are no longer asked are dropped.
+/// The answers of a machine with the changes in `given`. An answer that was a preset follows the changed
+/// preset. Answers to questions that are no longer asked are dropped.
 setup::Answers changed_answers(const setup::Answers &recorded, const setup::Answers &given);
 
-/// The rule for lines that a person and the new answers change differently.
+/// The rule for lines that both a person and the new answers have changed.
 enum class ConflictRule { REPORT, KEEP_EDITED, TAKE_NEW };
 
 struct FileChange {
-    std::string name;  ///< in the folder
+    std::string name;  ///< name in the folder
     enum class Type { UNCHANGED, CHANGED, CREATED, REMOVED } type = Type::UNCHANGED;
     std::vector<setup::Conflict> conflicts;
 };
@@ -35,8 +35,8 @@ struct MachineChange {
     bool hasConflicts() const;
 };
 
-/// Writes the files of `plan` into the folder of a machine. With REPORT and a conflict nothing is written.
-/// `plan` must be free of faults.
+/// Writes the files of `plan` to the folder of a machine. With REPORT nothing is written if there is a
+/// conflict. `plan` must be free of faults.
 Result<MachineChange> change_machine(const std::string &folder, const setup::Plan &plan,
                                      const setup::Answers &given, ConflictRule rule);
 

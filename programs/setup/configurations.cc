@@ -40,7 +40,7 @@ std::string sample_folder() {
     return {};
 }
 
-/// Reads the machine of an INI file; false for a file that only others include.
+/// Reads the machine of an INI file; false for a file that is only included by others.
 bool read_machine(const std::string &path, Configuration &configuration) {
     diagnostics::Sink ignored;
     const auto file = ini::IniFile::load(path, ignored);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Configurations of machines that may be chosen: those of the user, samples, and those of other packages.
+// Configurations of machines for selection: those of the user, samples, and those of other packages.
 #pragma once
 
 #include <string>
@@ -33,12 +33,12 @@ struct ConfigurationGroup {
 std::vector<ConfigurationGroup> find_configurations();
 
 /// Copies the folder of a sample to ~/millwright/configs, unless it exists there, with a link to the programs
-/// that it names by ../../nc_files. @return the path of the INI file there
+/// that it refers to by ../../nc_files. @return the path of the INI file there
 Result<std::string> copy_sample(const ConfigurationGroup &group, const Configuration &configuration);
 
-/// [PICKCONFIG]LAST_CONFIG of ~/.linuxcncrc; empty when there is none.
+/// [PICKCONFIG]LAST_CONFIG of ~/.linuxcncrc; empty if it is not set.
 std::string last_configuration();
-/// Stores it there, and keeps the rest of the file.
+/// Stores it in this key, and keeps the rest of the file.
 Result<> remember_configuration(const std::string &ini);
 
 }  // namespace mw::programs

@@ -55,7 +55,7 @@ std::string notes_of(const std::string &path) {
     return notes.substr(0, LONGEST);
 }
 
-/// The picture with the name of the INI file; otherwise the splash picture of the screen.
+/// The picture with the name of the INI file, otherwise the splash picture of the screen.
 std::string picture_of(const fs::path &ini, const std::string &intro) {
     std::error_code error;
     for (const char *ending : {".png", ".jpg", ".jpeg", ".gif", ".svg"}) {
@@ -100,7 +100,7 @@ std::vector<screen::ChoiceGroup> find_choices() {
     return groups;
 }
 
-/// A copy of a sample; other configurations themselves.
+/// A copy of a sample; other configurations unchanged.
 Result<FirstStepsSetup::Start> prepare(const std::string &ini) {
     std::string path = ini;
     for (const ConfigurationGroup &group : find_configurations()) {

@@ -12,15 +12,15 @@ namespace mw::programs {
 /// Set while one of our pages waits for the machine's screen, so that no second page is opened.
 inline constexpr const char *BROWSER_WAITS = "MILLWRIGHT_BROWSER_WAITS";
 
-/// Data for a person: type, axes, notes and picture from the INI file and files beside it.
+/// Data for the user: type, axes, notes and picture, from the INI file and files beside it.
 screen::Choice choice_of(const Configuration &configuration);
 
 /// The port of the screen in [DISPLAY]DISPLAY; 0: another screen.
 int screen_port(const std::string &display);
 
-/// Serves the page on 127.0.0.1:`port` (0: a free one) until a selection or a stop signal; with `isOpening`
-/// opens it in the desktop's browser. @return the absolute path of the INI file, stored as the last one;
-/// empty without a selection
+/// Serves the page on 127.0.0.1:`port` (0: any free port) until a selection or a stop signal. With
+/// `isOpening` opens it in the desktop's browser. @return the absolute path of the INI file, stored as the
+/// last one; empty without a selection
 Result<std::string> select_in_browser(int port, bool opening);
 
 }  // namespace mw::programs

@@ -85,7 +85,7 @@ class Child {
         }
         return {};
     }
-    /// False: it did not end in time, or a stop signal arrived.
+    /// False if it did not end in time, or a stop signal arrived.
     bool read_to_end(std::string &output) {
         constexpr int LOOK_MS = 100;
         const auto end = std::chrono::steady_clock::now() + LONGEST_TRIAL;

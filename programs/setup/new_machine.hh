@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A new machine from a person's description: creates its folder and tries it.
+// Creates the folder of a new machine from answers, and tries the machine.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@ namespace mw::programs {
 
 /// Reads lines of "key = value"; skips empty lines and those that begin with #.
 Result<setup::Answers> read_answers(const std::string &text, const std::string &name);
-/// Text for read_answers(): all answers of a machine, including presets.
+/// Text for read_answers(): all answers of a machine, presets included.
 std::string answers_text(const setup::Answers &given);
 
-/// Records the answers, and the files as they were generated, in the folder of a machine.
+/// Name of the records in the folder of a machine: the answers, and the files as generated.
 inline constexpr const char *ANSWERS_FILE = "answers.txt", *GENERATED_FOLDER = ".generated";
 /// Writes the record of generated files.
 Result<> write_generated(const std::string &folder, const std::vector<setup::File> &files);
@@ -35,7 +35,7 @@ struct Trial {
 };
 
 /// Starts the machine in virtual time in a separate process, homes it and runs the program. Blocks for at
-/// most two minutes; a stop signal ends it, too.
+/// most two minutes; a stop signal also ends it.
 Result<Trial> try_machine(const NewMachine &machine);
 
 }  // namespace mw::programs

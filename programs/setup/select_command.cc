@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright select: a person at a terminal chooses a configuration.
+// millwright select: selection of a configuration at a terminal.
 #include "programs/setup/select_command.hh"
 
 #include <unistd.h>
@@ -42,7 +42,7 @@ std::vector<Choice> show(const std::vector<ConfigurationGroup> &groups, const st
     return choices;
 }
 
-/// Empty: nothing is started.
+/// Empty if nothing is to be started.
 std::optional<Choice> ask(const std::vector<Choice> &choices, const std::string &last) {
     std::optional<Choice> preset;
     for (const Choice &choice : choices) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The selector of configurations as a screen of text.
+// The selection of configurations in a terminal.
 #pragma once
 
 #include <string>

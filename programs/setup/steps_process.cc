@@ -22,7 +22,7 @@
 namespace mw::programs {
 namespace {
 
-/// Input and output are one end of a pair of sockets: writing never blocks, and raises no signal.
+/// Input and output are one end of a socket pair, so writing never blocks and raises no signal.
 class Child final : public screen::StepsProcess {
   public:
     Child(int fd, pid_t pid) : fd_(fd), pid_(pid) {}
@@ -30,7 +30,8 @@ class Child final : public screen::StepsProcess {
     Child &operator=(const Child &) = delete;
     ~Child() override {
         close();
-        // It switches the machine off first; only one that hangs is ended, and its watchdog has switched off.
+        // The process switches the machine off first. Only a process that hangs is killed; its watchdog has
+        // then switched the machine off.
         constexpr int LOOKS = 100, LOOK_US = 100'000;
         for (int i = 0; i < LOOKS && !hasEnded(); ++i) {
             ::usleep(LOOK_US);
@@ -44,7 +45,8 @@ class Child final : public screen::StepsProcess {
 
     void send(std::string_view line) override {
         const std::string whole = std::string(line) + "\n";
-        // A part of a line would damage the next one: a line that does not fit at once ends the session.
+        // A part of a line would corrupt the next line, so a line that cannot be sent completely ends the
+        // session.
         const ssize_t sent = ::send(fd_, whole.data(), whole.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent >= 0 && static_cast<std::size_t>(sent) != whole.size()) {
             close();

@@ -6,7 +6,7 @@
 
 namespace mw::programs {
 
-/// In virtual time for a machine with a simulated board.
+/// Runs in virtual time for a machine with a simulated board.
 Result<std::unique_ptr<screen::StepsProcess>> start_steps(const std::string &ini);
 
 }  // namespace mw::programs

@@ -22,7 +22,7 @@ class Browser {
   public:
     /// Opens the address if there is a desktop; does not wait.
     void open(const std::string &address);
-    /// Call now and then: collects the program that opens it.
+    /// Call it periodically: it waits for the program that opens the address.
     void look();
 
   private:

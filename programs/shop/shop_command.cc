@@ -31,7 +31,7 @@ namespace {
 using namespace shop;
 
 constexpr auto TICK = std::chrono::milliseconds(20), HTTP_TICK = std::chrono::milliseconds(100);
-/// For a batch that the database has not committed when the program ends.
+/// Maximum wait at the end for a batch that the database has not committed.
 constexpr double END_S = 5;
 
 struct ShopWords {
@@ -68,7 +68,7 @@ HostApplication::Moment now() {
             std::chrono::duration<double>(steady).count()};
 }
 
-/// From any thread.
+/// May be called from any thread.
 void report(const std::string &what) {
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
@@ -90,7 +90,7 @@ Result<std::unique_ptr<screen::Server>> listen(const PagePort &port) {
     return screen::Server::listen(options);
 }
 
-/// The page has a separate thread: a long query delays no value.
+/// The page has a separate thread, so that a long query delays no values.
 class PageThread {
   public:
     PageThread(std::unique_ptr<screen::Server> server, const std::string &database)

@@ -28,10 +28,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As DISPLAY = millwright: the screen of `millwright ui`.
+/// Equivalent to DISPLAY = millwright: the screen of `millwright ui`.
 constexpr const char *OWN_SCREEN = "millwright";
 
-/// In the forked child. Only async-signal-safe calls.
+/// Runs in the forked child. Only async-signal-safe calls.
 [[noreturn]] void become_display(char *const argv[], const char *folder, pid_t parent, int failed) {
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
@@ -85,7 +85,8 @@ Result<std::vector<std::string>> DisplayProgram::words(const std::string &displa
 
 Result<DisplayProgram> DisplayProgram::start(const std::vector<std::string> &words, const std::string &ini) {
     const std::string folder = fs::path(ini).parent_path().string();
-    // Everything is prepared before the fork: the child of a process with threads may not allocate memory.
+    // Everything is prepared before the fork, because the child of a process with threads may not allocate
+    // memory.
     ::setenv("INI_FILE_NAME", ini.c_str(), 1);
     ::setenv("CONFIG_DIR", folder.c_str(), 1);
     std::vector<std::string> owned = words;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The program that [DISPLAY]DISPLAY names, while a machine is running.
+// The program named in [DISPLAY]DISPLAY, while a machine is running.
 #pragma once
 
 #include <sys/types.h>
@@ -28,7 +28,7 @@ class DisplayProgram {
     DisplayProgram(DisplayProgram &&other) noexcept;
     DisplayProgram &operator=(DisplayProgram &&) = delete;
 
-    /// Its exit status, or a signal's number plus 128, when it has ended. Does not block.
+    /// Its exit status when it has ended, or the number of the signal plus 128. Does not block.
     std::optional<int> end();
     /// Requests it to end.
     void ask_to_end();

@@ -104,7 +104,7 @@ struct LaunchWords {
     }
 };
 
-/// True: the person at the terminal wants to end the running machine.
+/// True if the person at the terminal wants to end the running machine.
 bool isEndWanted(const std::string &ini) {
     fmt::print("A machine is already running: {}\nEnd it and start again? [Y/n] ", ini);
     std::fflush(stdout);
@@ -118,7 +118,7 @@ Result<> end_machine(const std::string &instance) {
     constexpr double PATIENCE_S = 20;
     auto viewer = client::Viewer::attach(instance);
     if (!viewer.has_value()) {
-        return {};  // ended meanwhile
+        return {};  // it has ended in the meantime
     }
     const int pid = viewer->machine_pid();
     if (pid <= 0 || ::kill(pid, SIGTERM) != 0) {

@@ -93,7 +93,7 @@ void set_launch_environment(const machine::LoadedConfig &loaded, const StartSett
     if (platform.empty() || platform == "glx") {
         set("PYOPENGL_PLATFORM", "x11");
     }
-    // Programs check that the file exists; find_machine() and the Python package ignore the name of the INI
+    // Programs check that the file exists. find_machine() and the Python package ignore the name of an INI
     // file.
     const std::string channels = first_value(loaded, "EMC", "NML_FILE");
     const std::string path = (fs::path(folder) / channels).string();

@@ -6,7 +6,7 @@
 
 namespace mw::programs {
 
-/// For this process and its children. Call before the first thread starts.
+/// For this process and its children. Call it before the first thread starts.
 void set_launch_environment(const machine::LoadedConfig &loaded, const StartSettings &settings);
 
 }  // namespace mw::programs

@@ -47,7 +47,7 @@ int MachineStart::run_machine() {
     if (status.has_value()) {
         status = keep_up();
         if (!status.has_value()) {
-            // Before ending the programs, which may take seconds.
+            // Posted before the programs are ended, which may take seconds.
             machine_->task().post(messages::MessageKind::OPERATOR_ERROR, status.error().str());
             sink_.failure(status.error());
             static_cast<void>(take_down());
@@ -112,7 +112,7 @@ Result<> MachineStart::make() {
     return {};
 }
 
-/// Screens read the file themselves, from their start.
+/// Screens read the file themselves, beginning with their start.
 void MachineStart::make_parameter_file() {
     const std::string &path = loaded_.machine.task.parameter_file;
     std::error_code ignored;
@@ -124,7 +124,7 @@ void MachineStart::make_parameter_file() {
     }
 }
 
-/// Reports files that cannot be saved: at the start, before there is anything to lose.
+/// Reports files that cannot be saved. Checked at the start, before data can be lost.
 void MachineStart::check_places() {
     const machine::MachineConfig &machine = loaded_.machine;
     for (const std::string &file :
@@ -166,7 +166,7 @@ Result<> MachineStart::cycle() {
     return access_->health();
 }
 
-/// On every exit: spindles and axes first, the programs last.
+/// Called on every exit: stops spindles and axes first, and ends the programs last.
 Result<> MachineStart::take_down() {
     const bool healthy = access_->health().has_value();
     if (healthy) {
@@ -198,7 +198,7 @@ void MachineStart::end_programs() {
     };
     const std::int64_t deadline_ns = access_->now_ns() + END_NS;
     while (!haveEnded() && access_->now_ns() < deadline_ns) {
-        access_->cycle();  // requests of ending programs are answered
+        access_->cycle();  // answers requests of programs that are ending
     }
     if (display_.has_value()) {
         display_->kill();
@@ -206,7 +206,7 @@ void MachineStart::end_programs() {
     side_programs_.reset();
 }
 
-/// By halcmd, because the HAL belongs to the realtime process; task continues meanwhile.
+/// Uses halcmd, because the HAL belongs to the realtime process; task continues in this time.
 void MachineStart::run_shutdown_file() {
     const std::string &file = loaded_.machine.shutdown_file;
     if (file.empty()) {
@@ -228,7 +228,7 @@ void MachineStart::run_shutdown_file() {
     }
 }
 
-/// Faults to operators, each result to the terminal.
+/// Reports faults to operators, and each result on the terminal.
 void MachineStart::tell_certificates() {
     while (auto finding = certifier_->take_finding()) {
         const std::string file = last_certificate_file(loaded_.machine);

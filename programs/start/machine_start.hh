@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A running machine with its display and additional programs, from the start to the end of all.
+// A running machine with its display and additional programs, from the start to the end of all of them.
 #pragma once
 
 #include <memory>

@@ -12,7 +12,7 @@
 namespace mw::programs {
 namespace {
 
-/// The ring holds seconds of samples.
+/// Sleep of the thread; the ring has space for seconds of samples.
 constexpr std::chrono::milliseconds READ_INTERVAL{50};
 
 std::optional<std::uint32_t> file_of(const motion::PathBody &body) {
@@ -51,7 +51,7 @@ void ProgramCertifier::push(Event event) {
     events_.push_back(std::move(event));
 }
 
-/// The thread cannot ask task for names.
+/// Passes the names of files, because the thread cannot ask task for them.
 void ProgramCertifier::pass_file_name(const motion::PathBody &body) {
     const std::optional<std::uint32_t> index = file_of(body);
     if (index.has_value() && std::ranges::find(passed_files_, *index) == passed_files_.end()) {
@@ -63,7 +63,7 @@ void ProgramCertifier::pass_file_name(const motion::PathBody &body) {
 void ProgramCertifier::step() {
     const task::Status &status = machine_.task().status();
     const bool isBusy = status.task.interp_state != messages::InterpState::IDLE;
-    // A paused program stays one in other modes.
+    // A paused program remains active in other modes.
     const bool isAuto = status.task.mode == messages::Mode::AUTO;
     const bool wasRunning = std::exchange(isRunning_, isBusy && (isRunning_ || isAuto));
     machine_.channels().isTracing.store(isRunning_ || isAuto ? 1 : 0);
@@ -83,7 +83,7 @@ void ProgramCertifier::step() {
     }
 }
 
-/// Moves of this cycle; the first ones are sent in the cycle in which the program begins.
+/// Passes the moves of this cycle. The first moves of a program are sent in the cycle in which it begins.
 void ProgramCertifier::pass_moves() {
     for (Move &move : sent_) {
         pass_file_name(move.body);
@@ -113,7 +113,8 @@ void ProgramCertifier::run(const std::stop_token &stop) {
             std::unique_lock lock(mutex_);
             wake_.wait_for(lock, stop, READ_INTERVAL, [] { return false; });
         }
-        // Samples first: a move is passed on when it is sent, so those that execute it are read after it.
+        // Reads the samples first: a move is passed on when it is sent, so the samples that execute it are
+        // read later.
         read_samples();
         {
             const std::lock_guard lock(mutex_);

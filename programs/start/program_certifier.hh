@@ -19,13 +19,14 @@
 
 namespace mw::programs {
 
-/// The file of the last program's certificate, beside the parameter file; empty without that file.
+/// The file of the last program's certificate, beside the parameter file; empty if there is no parameter
+/// file.
 std::string last_certificate_file(const machine::MachineConfig &machine);
 
-/// Task's thread only passes moves and the begin and end of programs on; a thread of this class reads the
+/// Task's thread only passes on moves and the start and end of programs. A thread of this class reads the
 /// samples of the servo thread and calculates. Task's thread passes the result to the journal's writer,
-/// because a disk that does not answer must not stop the end of the machine. During its lifetime it is the
-/// only listener of the machine's moves and the only reader of its samples.
+/// because a disk that does not answer must not prevent the machine from ending. During its lifetime it is
+/// the only listener of the machine's moves and the only reader of its samples.
 class ProgramCertifier {
   public:
     ProgramCertifier(machine::Machine &machine, const machine::MachineConfig &config);
@@ -36,13 +37,13 @@ class ProgramCertifier {
     /// Once a task cycle. [task's thread]
     void step();
 
-    /// What a person has to know of a program that has ended.
+    /// Information for the operator about a program that has ended.
     struct Finding {
         std::string text;
         bool isFault = false;  ///< a limit or a tolerance was exceeded
-        std::string json;      ///< the certificate, for the file; empty: already passed on
+        std::string json;      ///< the certificate for the file; empty: already passed on
     };
-    /// The next finding; empty: none. [task's thread]
+    /// The next finding; empty if there is none. [task's thread]
     std::optional<Finding> take_finding();
 
   private:
@@ -82,21 +83,21 @@ class ProgramCertifier {
     machine::Machine &machine_;
     const machine::MachineConfig &config_;
     const std::string file_;
-    // Of task's thread.
+    // --- used by task's thread
     bool isRunning_ = false;
     std::int64_t start_ns_ = 0;
-    std::vector<Move> sent_;  ///< in this cycle
+    std::vector<Move> sent_;  ///< moves sent in this cycle
     std::vector<std::uint32_t> passed_files_;
-    // Of the certifier's thread.
+    // --- used by the certifier's thread
     std::optional<Program> program_;
     std::map<std::uint32_t, std::string> files_;
-    std::vector<motion::TraceSample> samples_;  ///< read and not taken
-    // Of both.
+    std::vector<motion::TraceSample> samples_;  ///< samples read and not processed
+    // --- used by both
     std::mutex mutex_;
     std::condition_variable_any wake_;
     std::deque<Event> events_;
     std::deque<Finding> findings_;
-    std::jthread thread_;  ///< last: it uses the others
+    std::jthread thread_;  ///< last member, because it uses the others
 };
 
 }  // namespace mw::programs

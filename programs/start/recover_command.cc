@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright recover: what a running machine offers after a power cut, and continuing with it.
+// millwright recover: shows the program that a running machine offers after a power cut, and continues it.
 #include <unistd.h>
 
 #include <cstdio>
@@ -18,7 +18,7 @@
 namespace mw::programs {
 namespace {
 
-/// Task's cycles take milliseconds; programs are calculated over many of them.
+/// Maximum waits for an answer and for the calculation of a program, which takes many task cycles.
 constexpr double ANSWER_S = 5.0, CALCULATED_S = 600.0;
 
 struct RecoverWords {

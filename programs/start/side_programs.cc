@@ -10,7 +10,8 @@ void SidePrograms::step(std::int64_t now_ns, diagnostics::Sink &sink) {
         return;
     }
     for (const std::string &command : commands_) {
-        // The command may have quotes and variables: a shell reads it, and becomes the program.
+        // The command may contain quotes and variables, so a shell parses it and is then replaced by the
+        // program.
         auto started = DisplayProgram::start({"/bin/sh", "-c", "exec " + command}, ini_);
         if (started.has_value()) {
             running_.push_back(std::move(*started));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The programs of [APPLICATIONS]: started some time after the machine, ended with it.
+// The programs of [APPLICATIONS], which are started some time after the machine and ended with it.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ class SidePrograms {
     SidePrograms(std::vector<std::string> commands, std::string ini, std::int64_t start_ns)
         : commands_(std::move(commands)), ini_(std::move(ini)), start_ns_(start_ns) {}
 
-    /// Starts them at their time. One that cannot be started is reported; the others are started.
+    /// Starts the programs at their time. A program that cannot be started is reported, and the others are
+    /// started.
     void step(std::int64_t now_ns, diagnostics::Sink &sink);
     void ask_to_end();
     bool haveEnded();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millwright start: a machine that runs until a signal comes or its display ends; clients run programs on
+// millwright start: a machine that runs until a signal arrives or its display ends; clients run programs on
 // it.
 #include <cstdio>
 

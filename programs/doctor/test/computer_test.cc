@@ -26,7 +26,7 @@ class Computer {
         fs::create_directories((root_.string() + path).substr(0, (root_.string() + path).rfind('/')));
         std::ofstream(root_.string() + path) << text << '\n';
     }
-    /// All findings, a line each.
+    /// All findings, one line each.
     std::string findings() const {
         diagnostics::Sink sink;
         examine_system(root_.string(), "/bin/true", sink);
@@ -88,7 +88,7 @@ TEST(DoctorTest, latencyIsHeldAgainstThePeriod) {
     EXPECT_NE(judged(figures(25'000, 15'000)).find("warning"), std::string::npos);
     EXPECT_NE(judged(figures(25'000, 15'000)).find("a period of 100000 ns"), std::string::npos);
     EXPECT_NE(judged(figures(1'000'000, 1'200'000)).find("misses its period"), std::string::npos);
-    // Ten milliseconds is not a possible period for a machine: none is proposed.
+    // Ten milliseconds is not a possible period for a machine, so no period is proposed.
     EXPECT_EQ(judged(figures(1'000'000, 9'000'000)).find("a period of"), std::string::npos);
     hal::view::LatencyFigures none = figures(1'000'000, 0);
     none.intervals = 0;

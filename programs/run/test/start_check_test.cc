@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Errors that are rejected before the start, and warnings (D1).
+// Tests errors that are rejected before the start, and warnings (D1).
 #include <unistd.h>
 
 #include <filesystem>

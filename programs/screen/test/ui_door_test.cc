@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The settings of `millwright ui` and its INI file for other computers and for questions (J1, J2, J3).
+// Tests the settings of `millwright ui` and its INI file for other computers and for questions (J1, J2, J3).
 #include <unistd.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The facts about the machine that a screen receives, from its INI file (J1).
+// Tests the data about the machine for a screen, from its INI file (J1).
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -58,7 +58,7 @@ class UiMachine : public testing::Test {
     }
     ~UiMachine() override { fs::remove_all(folder_); }
 
-    /// One of our machines with additional lines in separate sections.
+    /// A sample machine with additional lines in separate sections.
     std::unique_ptr<machine::LoadedConfig> load(const std::string &ini, const std::string &display = "",
                                                 const std::string &more = "") {
         const fs::path path = folder_ / "machine.ini";
@@ -297,7 +297,7 @@ TEST_F(UiMachine, AProgramWithErrorsHasNoTime) {
     EXPECT_NE(times.error.find("p.ngc:3"), std::string::npos);
 }
 
-/// Output of a filter with this shell script, and the program it has made.
+/// Output of a filter with this shell script, and the program that it has created.
 class Filter : public UiMachine {
   protected:
     std::string run(const std::string &script,
@@ -365,7 +365,7 @@ TEST_F(Filter, EndsWithAllThatItHasStartedWhenNobodyWaits) {
     const int pid = std::stoi(read_file(mark).value_or("0"));
     ASSERT_GT(pid, 0);
     while (::kill(pid, 0) == 0) {
-        std::this_thread::yield();  // until it has ended, or the test times out
+        std::this_thread::yield();  // until the filter has ended, or the test times out
     }
     EXPECT_EQ(made(), "none");
     EXPECT_EQ(files_beside(), 0U);
@@ -411,7 +411,7 @@ TEST_F(UiMachine, ReadersEndWhenNobodyReads) {
         EXPECT_TRUE(read("10.0.0.1", screen::Role::OPERATE));
     }
     EXPECT_FALSE(read("10.0.0.4", screen::Role::OPERATE)) << "as many as can be in all";
-}  // they are ended here
+}  // the destructor ends them
 
 TEST_F(UiMachine, ALongMoveEndsWhenNobodyReadsOrALimitIsExceeded) {
     const auto loaded = load("mill_mm");
@@ -428,7 +428,7 @@ TEST_F(UiMachine, ALongMoveEndsWhenNobodyReadsOrALimitIsExceeded) {
     }
     PathReaders readers(*loaded, {});
     ASSERT_TRUE(readers.read_times(path, {.feed = 0.001}).has_value());
-}  // it is ended here
+}  // the destructor ends it
 
 }  // namespace
 }  // namespace mw::programs

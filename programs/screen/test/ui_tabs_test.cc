@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// User panels, and programs that wait for the screen's pins (J1, J2).
+// Tests user panels, and programs that wait for the screen's pins (J1, J2).
 #include <unistd.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The programs that [DISPLAY]DISPLAY starts (J1).
+// Tests the programs that [DISPLAY]DISPLAY starts (J1).
 #include <gtest/gtest.h>
 
 #include "base/own_place.hh"

@@ -25,7 +25,7 @@ class MemoryBus final : public RegisterBus {
     std::function<std::optional<std::uint32_t>(std::uint16_t)> on_read_register;
     /// Called before each read of a cycle.
     std::function<void()> on_read;
-    /// Result of the next read; DONE unless set. The next write is lost, so that the bus requires all
+    /// Result of the next read. With `next_write_lost` the next write is lost, so that the bus requires all
     /// registers afterwards.
     CycleRead next_read = CycleRead::DONE;
     bool next_write_lost = false;
