@@ -6,7 +6,7 @@ import { defineConfig, type Plugin } from 'vite';
 
 const here = (name: string): string => fileURLToPath(new URL(name, import.meta.url));
 
-/** The page that chooses a machine: the frame of index.html with a program of its own. */
+/** The page for selecting a machine: the frame of index.html with another program. */
 function firstPage(): Plugin {
   const path = here('first.html');
   return {
@@ -17,7 +17,7 @@ function firstPage(): Plugin {
   };
 }
 
-// Everything that the page needs lies in the output: nothing is fetched from elsewhere.
+// The output contains everything that the page needs; nothing is fetched from other servers.
 export default defineConfig({
   plugins: [firstPage(), svelte()],
   build: {
@@ -26,7 +26,7 @@ export default defineConfig({
     target: 'es2022',
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 1500,
-    // The screen of a machine, and the page that chooses one.
+    // The screen of a machine, and the page for selecting a machine.
     rollupOptions: { input: ['index.html', 'first.html'] },
   },
   worker: { format: 'es' },

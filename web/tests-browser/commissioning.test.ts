@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The steps at a machine, from the wizard to "ready", by an owner with nothing but the page (A7).
+// Tests the commissioning steps, from the wizard to "ready", using only the page (A7).
 import { mkdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
@@ -16,7 +16,7 @@ interface Shown {
   number: string;
   text: string;
 }
-/** What the page asks for; null: nothing. */
+/** The request of the page; null if there is none. */
 async function shown(): Promise<Shown | null> {
   return page.evaluate(() => {
     const prompt = document.querySelector<HTMLElement>('[data-testid=prompt]');
@@ -32,7 +32,7 @@ async function pressHold(): Promise<void> {
   await page.mouse.down();
 }
 
-/** Does what the page asks once. @param factor measured travel of a commanded one */
+/** Fulfils one request of the page. @param factor ratio of measured to commanded travel */
 let commanded = 0;
 async function answer(asked: Shown, factor: number): Promise<void> {
   commanded = Number(/moves by ([\d.]+) /.exec(asked.text)?.[1] ?? commanded);
@@ -51,7 +51,7 @@ async function answer(asked: Shown, factor: number): Promise<void> {
   }
   await until(() => isNew(asked.number), asked.text, 20_000);
 }
-/** Follows the page until it asks for something that fits. */
+/** Follows the page until a request fits. */
 async function follow(stop: (asked: Shown) => boolean, factor = 1): Promise<Shown> {
   const end = Date.now() + 120_000;
   while (Date.now() < end) {
@@ -128,7 +128,7 @@ it('ends with the page, and continues where it was', async () => {
 it('comes to a ready machine with a corrected scale', async () => {
   const before = readFileSync(join(folder, 'machine.ini'), 'utf8');
   expect(before).toContain('STEP_SCALE = 160');
-  // The screw of X is not the one that was described: half of the travel.
+  // The screw of X differs from its description: half of the travel.
   await follow((asked) => /Read the gauge on X/.test(asked.text));
   await answer((await shown()) as Shown, 0.5);
   const end = Date.now() + 240_000;

@@ -24,7 +24,7 @@ afterAll(async () => {
 
 const program = (): string => join(rig.programs, 'Flange.ngc');
 const field = (id: string) => page.getByTestId(`conv-${id}`);
-/** The list has no place beside the form where the view is narrow. */
+/** The list is not beside the form if the view is narrow. */
 async function toList(): Promise<void> {
   await field('save').waitFor();
   await sleep(50);
@@ -79,7 +79,7 @@ it('opens it again with the same values, and replaces it only after a question',
   await field('save').click();
   await until(() => readFileSync(program(), 'utf8').includes('Z-12'), 'the changed file');
   expect(readFileSync(`${program()}~`, 'utf8')).toContain('Z-15');
-  // Changed elsewhere since.
+  // Changed by another program since.
   rig.write('Flange.ngc', readFileSync(program(), 'utf8').replace('S1500', 'S1600'));
   await field('depth').fill('11');
   await field('save').click();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Conversational programming on a lathe: the forms are those of the machine, and each makes a program that it reads (J1).
+// Tests conversational programming on a lathe: the forms are those of the machine, and the machine reads each
+// generated program (J1).
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';

@@ -20,7 +20,7 @@ const AFTER_MS = 450;
 const STYLES = ['frozen', 'hidden', 'closed'] as const;
 type Style = (typeof STYLES)[number];
 
-/** By the servo thread's time, by the computer's (both in s), and where the joint is. */
+/** Servo time and computer time [both in s], and position of the joint. */
 interface Sample {
   servo: number;
   clock: number;
@@ -29,13 +29,13 @@ interface Sample {
 
 const rig = new Rig(byHand);
 const samples: Sample[] = [];
-/** When the page has sent a renewal or the begin of a jog, by the computer's clock. [s] */
+/** Times at which the page has sent a renewal or the start of a jog, by the computer's clock. [s] */
 const sent: number[] = [];
 let watch: ChildProcess;
 let page: Page;
 let session: CDPSession;
 
-/** Numbers from 0 to 1 that a seed and a number decide (mulberry32). */
+/** Numbers from 0 to 1, determined by a seed and a number (mulberry32). */
 function chance(seed: number): () => number {
   let state = seed >>> 0;
   return () => {
@@ -57,12 +57,12 @@ async function open(): Promise<void> {
       sent.push(timestamp);
     }
   });
-  await page.reload(); // its connection is seen from the begin
+  await page.reload(); // so that its connection is observed from the beginning
   await page.getByTestId('jog-X+').waitFor();
   await page.getByTestId('increment-continuous').click();
 }
 
-/** The servo's time of a moment: between the samples before and after it. */
+/** Servo time of a moment, interpolated between the samples before and after it. */
 function servoTime(when: number): number {
   const next = samples.findIndex((one) => one.clock > when);
   const [before, after] = [samples[next - 1], samples[next]];
@@ -74,7 +74,7 @@ function servoTime(when: number): number {
 
 interface Judged {
   style: Style;
-  /** At its speed so long after the last renewal; it moved until, and stood still in the middle for. [s] */
+  /** Time at its speed after the last renewal; time until it stopped; duration of a standstill in between. [s] */
   delay: number;
   end: number;
   still: number;
@@ -86,7 +86,8 @@ function judge(style: Style, begun: number, last: number): Judged {
   const speeds = pairs.map(({ before, after }) => ({ at: after.servo, from: before.servo, speed: after.servo > before.servo ? Math.abs(after.place - before.place) / (after.servo - before.servo) : null }));
   const known = speeds.filter((one): one is { at: number; from: number; speed: number } => one.speed !== null);
   const inJog = known.filter((one) => one.from > from + 0.1 && one.at < to).map((one) => one.speed).sort((a, b) => a - b);
-  const top = inJog[inJog.length >> 1] ?? NaN; // place and time of a sample are not read at once: the greatest is more
+  // position and time of a sample are not read at once, so the maximum is exceeded slightly
+  const top = inJog[inJog.length >> 1] ?? NaN;
   const fast = known.filter((one) => one.speed > 0.9 * top).at(-1)?.at ?? NaN;
   const moved = known.filter((one) => one.speed > 1e-4).at(-1)?.at ?? NaN;
   let [still, since] = [0, null as number | null];
@@ -117,7 +118,7 @@ async function cut(style: Style): Promise<() => Promise<void>> {
   const frozen = page.evaluate((ms) => {
     const end = performance.now() + ms;
     while (performance.now() < end) {
-      // as a page does whose script hangs
+      // as a page whose script hangs
     }
   }, AFTER_MS + 200);
   return async () => {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What [DISPLAY] and [HAL]POSTGUI_... say of the screen: title, kept lines and preferences, panels, programs beside it (J1, J2).
+// Tests the effects of [DISPLAY] and [HAL]POSTGUI_... on the screen: title, stored lines and preferences,
+// panels, additional programs (J1, J2).
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';

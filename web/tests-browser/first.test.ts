@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Without a running machine: the selector with search and pictures, and the wizard, against `millwright select --browser` (J1, A7).
+// Tests the pages without a running machine: the selector with search and pictures, and the wizard, with
+// `millwright select --browser` (J1, A7).
 import { copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -29,7 +30,7 @@ async function look(name: string): Promise<void> {
 beforeAll(async () => {
   mkdirSync(home);
   port = await freePort();
-  // The first machine of the shop has a picture, and its screen takes over the selector's place.
+  // The first machine of the shop has a picture, and its screen replaces the selector.
   writeFileSync(rig.ini, readFileSync(rig.ini, 'utf8').replace('DISPLAY = millwright', `DISPLAY = millwright --port ${port}`));
   copyFileSync(fileURLToPath(new URL('../../docs/pocket.png', import.meta.url)), rig.ini.replace('.ini', '.png'));
   await rig.startSelector(port, home, shop);

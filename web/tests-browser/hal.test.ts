@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL in the browser: names and values, the oscilloscope, and what pins ask the operator (B7, J2, J3).
+// Tests HAL in the browser: names and values, the oscilloscope, and questions of pins to the operator (B7,
+// J2, J3).
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
 import { bringUp, errorsOf, Rig, showFailure, until, untilText } from './rig';
@@ -64,7 +65,7 @@ describe('names and values', () => {
     await untilText(page, 'hal-set-failed', /perhaps/);
     await page.getByTestId('hal-value').fill('1');
     await page.getByTestId('hal-set-now').click();
-    await untilText(page, 'state', 'Off'); // it is the real thing
+    await untilText(page, 'state', 'Off'); // shows the real value
     rig.setPin('halui.machine.off', '0');
     await page.getByTestId('on').click();
     await untilText(page, 'state', 'On');
@@ -89,7 +90,7 @@ describe('the oscilloscope', () => {
     expect(csv[0]).toContain('joint.0.pos-cmd');
     const rows = csv.slice(1, 401).map((line) => line.split(',').map(Number));
     const at = rows.findIndex((row) => row[0] === 0);
-    expect(at).toBe(80); // 20 percent before
+    expect(at).toBe(80); // 20 percent before the trigger
     expect(rows[at - 1]?.[1]).toBeLessThanOrEqual(5);
     expect(rows[at]?.[1]).toBeGreaterThan(5);
     for (let i = 1; i < rows.length; ++i) {
@@ -115,7 +116,7 @@ describe('what pins ask', () => {
   it('a dialog is closed, and noted', async () => {
     rig.setPin('screen.door', '1');
     await untilText(page, 'question', /Close the door\s*It is open/);
-    await page.getByTestId('estop').dispatchEvent('pointerdown'); // no dialog lies over the stops
+    await page.getByTestId('estop').dispatchEvent('pointerdown'); // no dialog covers the stops
     await untilText(page, 'state', 'Emergency stop');
     await page.getByTestId('question-ok').click();
     await until(() => rig.pin('screen.door') === 'FALSE', 'the pin');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A long program: its path comes at once, and can be turned (J3). MW_SCREEN_LINES=1000000 and 10000000 give the figures of
-// docs/user/screen.md.
+// Tests a long program: its path appears at once and can be rotated (J3). MW_SCREEN_LINES=1000000 and
+// 10000000 give the figures of docs/user/screen.md.
 import { closeSync, openSync, writeSync } from 'node:fs';
 import { join } from 'node:path';
 import { afterAll, beforeAll, expect, it } from 'vitest';
@@ -73,7 +73,7 @@ it('is drawn while it is read, and turned without waiting', async () => {
   gaps.sort((a, b) => a - b);
   const at = (share: number): string => (gaps[Math.min(Math.floor(gaps.length * share), gaps.length - 1)] ?? NaN).toFixed(0);
   console.log(`${LINES} lines: first points after ${first} ms, all after ${whole} ms, the page has up to ${memory.toFixed(0)} MB; ${gaps.length} frames while turned, median ${at(0.5)} ms, p99 ${at(0.99)} ms, longest ${at(1)} ms, ${await pieces()} pieces drawn in motion`);
-  // Bounds for a computer that does other things, too; docs/user/screen.md has the figures of one that does not.
+  // Limits for a busy computer; docs/user/screen.md has the figures of an idle one.
   expect(gaps.length).toBeGreaterThan(10);
   expect(Number(at(0.5))).toBeLessThan(150);
   expect(whole).toBeLessThan(Math.max(20_000, LINES / 250));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Views of a lathe and a foam cutter; colours of a path.
+// Tests the views of a lathe and a foam cutter, and the colours of a path.
 import { afterAll, describe, expect, it } from 'vitest';
 import type { Page } from 'playwright-core';
 import { errorsOf, judgeByAxe, Rig, sleep, text, until, untilText } from './rig';
@@ -24,7 +24,7 @@ afterAll(async () => {
   await Promise.all(rigs.map((rig) => rig.end()));
 });
 
-/** Of the path in each size. */
+/** Picture of the path in each size. */
 async function pictures(page: Page, name: string): Promise<void> {
   for (const [width, height] of PICTURES === undefined ? [] : ([[390, 844], [800, 480], [1280, 800]] as const)) {
     await page.setViewportSize({ width, height });
@@ -34,7 +34,7 @@ async function pictures(page: Page, name: string): Promise<void> {
   }
 }
 
-/** Where the orthographic camera puts a point: in parts of the picture, to the right and up. */
+/** Position of a point in the orthographic camera, as fractions of the picture to the right and up. */
 async function seen(page: Page, point: [number, number, number]): Promise<{ right: number; up: number }> {
   return page.evaluate((at) => {
     const scene = (document.querySelector('canvas') as unknown as { scene: { camera: { position: { clone(): { set(...a: number[]): { project(c: unknown): { x: number; y: number } } } } } } }).scene;
@@ -43,7 +43,7 @@ async function seen(page: Page, point: [number, number, number]): Promise<{ righ
   }, point);
 }
 
-/** How much of the picture has about this colour. */
+/** Fraction of the picture with about this colour. */
 async function pixelsOf(page: Page, color: [number, number, number]): Promise<number> {
   return page.evaluate((wanted) => {
     const canvas = document.querySelector('canvas') as HTMLCanvasElement;

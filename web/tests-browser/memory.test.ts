@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A page that stays open for a shift keeps its memory: the status of a running machine is recorded, and replayed at 50 times
-// its speed (J3). MW_SCREEN_REPLAY_H=3 gives the figure of docs/user/screen.md.
+// Tests that a page that is open for a shift keeps its memory: the status of a running machine is recorded,
+// and replayed at 50 times its speed (J3). MW_SCREEN_REPLAY_H=3 gives the figure of docs/user/screen.md.
 import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { CDPSession, Page } from 'playwright-core';
 import { bringUp, errorsOf, Rig, sleep, untilText } from './rig';
@@ -14,7 +14,7 @@ const rig = new Rig();
 let page: Page;
 let session: CDPSession;
 
-/** The page's socket keeps the statuses that come, and plays them again with a clock that goes on. */
+/** The page's socket records the statuses, and replays them with a continuing clock. */
 const RECORDER = `
 const Real = window.WebSocket;
 window.recorded = [];
@@ -90,7 +90,7 @@ afterAll(async () => {
 
 it('keeps its memory over a shift', async () => {
   const statuses = Math.round(HOURS * 3600 * STATUS_HZ);
-  const warm = Math.max(2400, Math.round(statuses / 20)); // a minute of plots and a trail are full then
+  const warm = Math.max(2400, Math.round(statuses / 20)); // a minute of plots and a trail are then complete
   expect(await page.evaluate(() => (window as unknown as Replayer).recorded.length)).toBeGreaterThan(50);
   await play(warm);
   const before = await heap();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What an operator does, by the buttons and keys of the page, against the real server and a simulated mill (J3).
-// What moved is read from HAL, not from the page.
+// Tests an operator's work with the buttons and keys of the page, on the real server and a simulated mill
+// (J3). Motion is read from HAL, not from the page.
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
 import { errorsOf, Rig, showFailure, sleep, text, until, untilText } from './rig';
@@ -334,7 +334,7 @@ describe('overrides by steps', () => {
     for (const [width, height] of [[1280, 800], [800, 480]] as const) {
       await page.setViewportSize({ width, height });
       for (const id of ['spindle-reverse-0', 'spindle-stop-0', 'spindle-forward-0', 'flood', 'mist']) {
-        // The page is laid out for the new size some time after it changes.
+        // The layout of the page changes some time after its size.
         await until(() => page.getByTestId(id).evaluate((button) => {
           const { x, y, width: wide, height: high } = button.getBoundingClientRect();
           return x >= 0 && wide >= 44 && high >= 44 && button.contains(document.elementFromPoint(x + wide / 2, y + high / 2));

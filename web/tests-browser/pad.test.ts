@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs by a simulated gamepad.
+// Tests jogs with a simulated gamepad.
 import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { Page } from 'playwright-core';
 import { bringUp, errorsOf, Rig, sleep, text, until, untilText } from './rig';
@@ -7,7 +7,7 @@ import { bringUp, errorsOf, Rig, sleep, text, until, untilText } from './rig';
 const rig = new Rig();
 let page: Page;
 
-/** In place of navigator.getGamepads: `window.pad` is what it returns, `window.polls` how often it was called. */
+/** Replaces navigator.getGamepads: `window.pad` is its result, `window.polls` the number of calls. */
 const FAKED = `window.pad = null;
 window.polls = 0;
 navigator.getGamepads = () => (++window.polls, [window.pad === null ? null : { index: 0, id: 'faked', connected: true, mapping: 'standard', timestamp: performance.now(),
@@ -18,7 +18,7 @@ interface Faked {
   polls: number;
 }
 
-/** How often the page had polled before. */
+/** Returns the number of polls before. */
 async function put(hold: boolean, axes: number[]): Promise<number> {
   return page.evaluate(([held, all]) => {
     const faked = window as unknown as Faked;
@@ -27,7 +27,7 @@ async function put(hold: boolean, axes: number[]): Promise<number> {
   }, [hold, axes] as const);
 }
 const POLLS = 4;
-/** Until the page has polled several times: what moves nothing at once must not do so later. */
+/** Waits until the page has polled several times, to detect a delayed motion. */
 async function set(hold: boolean, axes: number[]): Promise<void> {
   const before = await put(hold, axes);
   await until(() => page.evaluate((polls) => (window as unknown as Faked).polls >= polls, before + POLLS), 'polls');
@@ -78,7 +78,7 @@ it('moves slower with less', async () => {
   await set(false, [0, 0, 0, 0]);
   await set(true, [0, 0, 0, 0]);
   await set(true, [0, -0.4, 0, 0]);
-  await untilText(page, 'velocity', /^7\d\d\b/); // a quarter of the stick's way, of 3000 mm/min
+  await untilText(page, 'velocity', /^7\d\d\b/); // a quarter of the stick's travel, at 3000 mm/min
   await set(true, [0, -0.6, 0, 0]);
   await untilText(page, 'velocity', /^15\d\d\b/);
   await set(false, [0, 0, 0, 0]);
@@ -106,7 +106,7 @@ it('does nothing in another view, nor when it is switched off', async () => {
   await set(true, [0.9, 0, 0, 0]);
   expect(await stands()).toBe(true);
   await page.getByTestId('pad-on').check();
-  expect(await stands()).toBe(true); // the stick is out of its middle
+  expect(await stands()).toBe(true); // the stick is out of its centre
   await page.setViewportSize({ width: 390, height: 844 });
   await page.getByTestId('tab-path').click();
   for (const [hold, x] of [[false, 0], [true, 0], [true, 0.9]] as const) {

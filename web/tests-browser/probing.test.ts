@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Probing by the view: a switch that closes at a face at X 12 of the machine, seen by a ball of 4 mm (I1, J1).
+// Tests probing in the view: a switch closes at a face at X 12 of the machine, for a probe ball of 4 mm (I1,
+// J1).
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
@@ -25,7 +26,10 @@ afterAll(async () => {
   await rig.end();
 });
 
-/** A person touches the tip of the probe, or the setter, when the view asks for that: an earlier contact does not count. */
+/**
+ * Touches the tip of the probe, or the setter, when the view asks for it, because an earlier contact is not
+ * accepted.
+ */
 async function touchByHand(): Promise<void> {
   await untilText(page, 'probe-hint', /touch its tip by hand|Press the setter/);
   await untilText(page, 'run-state', 'Idle');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The time of a program, what is left of it, and where it is lost (J3).
+// Tests the time of a program, its remaining time, and the positions where time is lost (J3).
 import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { Page } from 'playwright-core';
 import { bringUp, errorsOf, judgeByAxe, Rig, text, until, untilText } from './rig';
@@ -8,7 +8,7 @@ const rig = new Rig();
 let page: Page;
 
 beforeAll(async () => {
-  // 12 s at its feed; each corner of the zigzag and the small circle lose some.
+  // 12 s at its feed; each corner of the zigzag and the small circle lose some time.
   const zigzag = Array.from({ length: 20 }, (_, i) => `X${10 + (i % 2)} Y${i * 0.5}`).join('\n');
   rig.write('part.ngc', `G21 G90 G61 F1200\nG1 X100\nX0\n${zigzag}\nG2 X12 I0.5 F20000\nG1 X60 F600\nM2\n`);
   await rig.startServer();
@@ -75,6 +75,6 @@ it('colours the path by the speed reached', async () => {
   const legend = await text(page, 'legend');
   const top = Number(/(\d+) mm\/min$/.exec(legend)?.[1]);
   expect(top).toBeGreaterThanOrEqual(1200);
-  expect(top).toBeLessThan(20_000); // so small a circle is not driven at its feed
+  expect(top).toBeLessThan(20_000); // the feed is not reached on such a small circle
   expect(errorsOf(page)).toEqual([]);
 });

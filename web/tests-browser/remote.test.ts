@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// From another computer: token, TLS, roles, and the switch that takes the protection away (J3). Each cell of the table in
-// docs/reference/api.md that a browser can request.
+// Tests access from another computer: token, TLS, roles, and the option that disables the protection (J3).
+// Each cell of the table in docs/reference/api.md that a browser can request.
 import { request as httpsRequest } from 'node:https';
 import { request as httpRequest } from 'node:http';
 import type { Page } from 'playwright-core';
@@ -25,7 +25,7 @@ function ask(address: string, method: string, path: string, headers: Record<stri
 }
 const bearer = (token: string): Record<string, string> => ({ Authorization: `Bearer ${token}` });
 
-/** Sends one command on a socket of the page, and gives its outcome. */
+/** Sends one command on a socket of the page; returns its outcome. */
 async function command(page: Page, order: object): Promise<{ progress: string; reason?: string }> {
   return page.evaluate(
     (sent) =>
@@ -106,7 +106,7 @@ describe('with a token and TLS', () => {
     expect(await page.getByTestId('login').count()).toBe(0);
     await page.getByTestId('reset').click();
     await untilText(page, 'state', 'Off');
-    expect(await page.evaluate(() => document.cookie)).toBe(''); // no script reads it
+    expect(await page.evaluate(() => document.cookie)).toBe(''); // scripts cannot read it
     await page.reload();
     await untilText(page, 'state', 'Off');
     await page.getByTestId('tab-settings').click();
@@ -119,7 +119,7 @@ describe('with a token and TLS', () => {
   it('a role that may only view is shown, and can still stop', async () => {
     const page = await rig.page({ ignoreHTTPSErrors: true }, `${rig.remoteAddress}#token=${rig.token('view')}`);
     await untilText(page, 'state', 'Off');
-    expect(page.url()).toBe(rig.remoteAddress); // the token is out of sight
+    expect(page.url()).toBe(rig.remoteAddress); // the token is not visible
     await page.getByTestId('on').click({ force: true });
     await untilText(page, 'why', /may only view/);
     expect(await command(page, { message: 'SetState', state: 'ON' })).toMatchObject({ progress: 'REFUSED' });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A simulated mill in real time, its server, and a browser: separate instance, folders and ports for each file.
+// A simulated mill in real time, its server, and a browser, with a separate instance, folders and ports for
+// each file.
 import { createRequire } from 'node:module';
 import { createServer } from 'node:net';
 import { execFileSync, spawn, spawnSync, type ChildProcess } from 'node:child_process';
@@ -24,7 +25,7 @@ net by-hand-done hal_manualtoolchange.changed => iocontrol.0.tool-changed
 net by-hand-number iocontrol.0.tool-prep-number => hal_manualtoolchange.number
 `;
 
-/** Tools are changed by a person. */
+/** Tools are changed manually. */
 export function byHand(ini: string): string {
   return ini.replace('HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\nHALFILE = by_hand.hal\n');
 }
@@ -57,7 +58,7 @@ export class Rig {
   private browser: Browser | null = null;
   private files = 0;
   address = '';
-  /** Of the way in for other computers. */
+  /** Address for other computers. */
   remoteAddress = '';
 
   constructor(change: (ini: string) => string = (ini) => ini, machine = 'mill_mm') {
@@ -96,7 +97,7 @@ export class Rig {
     return one.process;
   }
 
-  /** `millwright select --browser` for a person whose home is `home`, with configurations in `shop`. */
+  /** `millwright select --browser` for a user with the home folder `home`, with configurations in `shop`. */
   async startSelector(port: number, home: string, shop: string): Promise<ChildProcess> {
     this.env['HOME'] = home;
     this.env['LINUXCNC_AUX_CONFIGS'] = shop;
@@ -109,7 +110,7 @@ export class Rig {
     return one.process;
   }
 
-  /** On a free port, or on the one of before. */
+  /** On a free port, or on the previous one. */
   async startServer(port = 0, words: string[] = []): Promise<ChildProcess> {
     const one = this.begin(['ui', this.ini, '--port', String(port), ...words]);
     const told = (): string => readFileSync(one.output, 'utf8');
@@ -124,13 +125,13 @@ export class Rig {
     return one.process;
   }
 
-  /** The secret of a role, from the file that the server has made. */
+  /** The secret of a role, from the file that the server has created. */
   token(role: string): string {
     const text = readFileSync(join(this.folder, 'config/millwright/screen/tokens'), 'utf8');
     return new RegExp(`^${role} (\\w+)$`, 'm').exec(text)?.[1] ?? '';
   }
 
-  /** Memory that the largest page of the browser has for itself, and its share of what it has with others. [MB] */
+  /** Private memory of the largest page of the browser, and its share of shared memory. [MB] */
   async pageMemory(): Promise<number> {
     const session = await (this.browser as Browser).newBrowserCDPSession();
     const { processInfo } = await session.send('SystemInfo.getProcessInfo');
@@ -183,11 +184,11 @@ export class Rig {
     return process;
   }
 
-  /** A pin of HAL. */
+  /** Value of a HAL pin. */
   pin(name: string): string {
     return execFileSync(join(BUILD, 'bin/halcmd'), ['getp', name], { env: this.env, encoding: 'utf8' }).trim();
   }
-  /** A signal of HAL; empty: there is none. */
+  /** Value of a HAL signal; empty if it does not exist. */
   signal(name: string): string {
     return spawnSync(join(BUILD, 'bin/halcmd'), ['gets', name], { env: this.env, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }).stdout.trim();
   }
@@ -234,10 +235,10 @@ interface Finding {
   nodes: { target: string[]; failureSummary: string }[];
 }
 
-/** axe-core finds nothing. */
+/** Checks that axe-core finds nothing. */
 export async function judgeByAxe(page: Page, what: string): Promise<void> {
   if (!(await page.evaluate(() => 'axe' in window))) {
-    await page.evaluate(AXE); // the rules of the page let no script tag in
+    await page.evaluate(AXE); // the rules of the page permit no script tag
   }
   const found = await page.evaluate(async () => {
     const { axe } = window as unknown as { axe: { run(options: object): Promise<{ violations: Finding[] }> } };
@@ -254,10 +255,10 @@ export async function text(page: Page, id: string): Promise<string> {
   return (await page.getByTestId(id).innerText()).trim();
 }
 
-/** A view by its tab, or by the list of views where the tabs have no place for it. */
+/** Opens a view by its tab, or by the list of views if the tabs do not fit. */
 export async function openView(page: Page, id: string): Promise<void> {
   const [tab, more] = [page.getByTestId(`tab-${id}`), page.getByTestId('tab-more')];
-  // The page may be changing from one size to another.
+  // The page may be changing its size.
   await until(async () => {
     if (!(await tab.isVisible()) && (await more.isVisible())) {
       await more.click({ timeout: 1000 }).catch(() => undefined);
@@ -278,7 +279,7 @@ export async function untilText(page: Page, id: string, wanted: string | RegExp,
   }
 }
 
-/** Out of emergency stop, on, homed: by the buttons. */
+/** Leaves emergency stop, switches on and homes, with the buttons. */
 export async function bringUp(page: Page): Promise<void> {
   await page.getByTestId('reset').click();
   await page.getByTestId('on').click();
@@ -290,7 +291,7 @@ export async function bringUp(page: Page): Promise<void> {
   await untilText(page, 'run-state', 'Idle');
 }
 
-/** A picture of the page, and what it says, of a test that has failed: where MW_SCREEN_PICTURES names a folder. */
+/** A picture of the page and its text after a failed test, if MW_SCREEN_PICTURES names a folder. */
 export async function showFailure(context: TestContext, page: Page): Promise<void> {
   const folder = process.env['MW_SCREEN_PICTURES'];
   if (context.task.result?.state === 'fail' && folder !== undefined) {

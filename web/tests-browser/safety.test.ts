@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What on the screen could hurt a person or a part: edited programs, keys, gestures, and controls that move (row J2).
+// Tests controls that could hurt a person or a part: edited programs, keys, gestures, and controls that
+// change position (row J2).
 import { readFileSync } from 'node:fs';
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
@@ -16,7 +17,7 @@ async function open(name: string): Promise<void> {
   await tab('programs');
   await page.getByTestId(`open-${name}`).click();
 }
-/** The machine does not move within a time in which it would. */
+/** Checks that the machine does not move within a time in which it would. */
 async function staysStopped(): Promise<void> {
   const before = [rig.position(0), rig.position(1)];
   await sleep(400);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a longer session needs: tools, offsets, the text of programs, starts at a line, a held program that is left,
-// and clients that connect and disconnect meanwhile (G1, D3, J1, J3).
+// Tests a longer session: tools, offsets, the text of programs, starts at a line, a paused program whose axes
+// are released, and clients that connect and disconnect (G1, D3, J1, J3).
 import { readFileSync } from 'node:fs';
 import type { ChildProcess } from 'node:child_process';
 import type { Page } from 'playwright-core';
@@ -124,7 +124,7 @@ describe('offsets', () => {
     await page.getByTestId('touch-off-set').click();
     await untilText(page, 'g5x-Y', '3.000');
     await untilText(page, 'work-Y', '-3.000');
-    // Offsets of another system are changed in place.
+    // Offsets of another system are changed in the table.
     await page.getByTestId('offsets-all').locator('summary').click();
     await page.getByTestId('all-G57-X').click();
     await page.getByTestId('offset-value').fill('12,5');
@@ -262,7 +262,7 @@ describe('clients that connect and disconnect', () => {
     const frozen = page.evaluate(() => {
       const end = performance.now() + 1200;
       while (performance.now() < end) {
-        // as a page does whose script hangs
+        // as a page whose script hangs
       }
     });
     await sleep(300);

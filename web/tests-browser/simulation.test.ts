@@ -46,7 +46,7 @@ async function picture(name: string): Promise<void> {
   }
 }
 
-/** One that is open may cover the buttons. */
+/** An open view may cover the buttons. */
 async function openDrawer(id: string): Promise<void> {
   const close = page.getByTestId('simulation-close');
   if (await close.isVisible()) {
@@ -153,7 +153,7 @@ it('follows the machine while it cuts', async () => {
   const first = await moves();
   await until(async () => (await moves()) > first, 'the next move');
   await untilText(page, 'run-state', 'Idle', 60_000);
-  // The picture stays there, although the tool table has changed with the tool and the path is read again.
+  // The picture is kept although the tool table has changed with the tool and the path is read again.
   await sleep(500);
   await untilText(page, 'simulation-line', /^1[2-4]\s/, 20_000);
   await page.getByTestId('simulation-live').click();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whose tool length is active, and what a touch off does with it; a spindle without an encoder; a machine without a probe.
+// Tests whose tool length is active, and its effect on a touch off; a spindle without an encoder; a machine
+// without a probe.
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
 import { bringUp, errorsOf, judgeByAxe, Rig, showFailure, sleep, text, until, untilText } from './rig';
@@ -55,7 +56,7 @@ describe('a touch off with the length of another tool', () => {
     await tab('offsets');
     return text(page, 'g5x-Z');
   };
-  /** The outcome of a command may come before the status with its effect. */
+  /** The outcome of a command may arrive before the status with its effect. */
   const untilZero = (wanted: () => number): Promise<void> => until(async () => Math.abs(Number(await zero()) - wanted()) < 0.0005, 'the zero of Z');
 
   it('is warned of', async () => {

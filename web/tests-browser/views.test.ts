@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every view in every size, light and dark: axe-core finds nothing, nothing runs out of the picture, and the stops can be
-// touched. With MW_SCREEN_PICTURES the pictures of docs/user/screen.md are taken from the running program.
+// Tests every view in every size, light and dark: axe-core finds nothing, nothing exceeds the picture, and
+// the stops can be touched. With MW_SCREEN_PICTURES the pictures of docs/user/screen.md are taken from the
+// running program.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
@@ -17,18 +18,19 @@ let page: Page;
 
 const judge = (what: string): Promise<void> => judgeByAxe(page, what);
 
-/** What can be touched lies in the picture, or in something that is scrolled, and the stops are on top. */
+/** Controls are inside the picture, or in a scrolled element, and the stops are on top. */
 async function isUsable(what: string): Promise<void> {
   const wrong = await page.evaluate(() => {
     const found: string[] = [];
     if (document.documentElement.scrollWidth > window.innerWidth + 1) {
       found.push(`the page is ${document.documentElement.scrollWidth} wide`);
     }
-    // Beside what scrolls sideways (the row of tabs, long text) nothing is cut off to the side, and no panel runs out below.
+    // Except for elements that scroll sideways (the row of tabs, long text) nothing is cut off at the side,
+    // and no panel exceeds the bottom.
     for (const one of document.querySelectorAll('main button, main input, main select')) {
       const box = one.getBoundingClientRect();
       let above = one.closest('.tabs, .cm-editor, .hidden-text, .sideways') === null && one.checkVisibility() ? one.parentElement : null;
-      // A dialog lies over what it is in.
+      // A dialog is above its owner.
       for (; above !== null && getComputedStyle(above).position !== 'fixed'; above = above.parentElement) {
         const room = above.getBoundingClientRect();
         const isClip = getComputedStyle(above).overflowX !== 'visible' || above.classList.contains('panel');

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Work zeros by one touch with their undo, and moves to zero after a confirmation. What moved is read from HAL.
+// Tests work zeros with one touch and their undo, and moves to zero after a confirmation. Motion is read from
+// HAL.
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
 import { errorsOf, judgeByAxe, Rig, showFailure, sleep, text, until, untilText } from './rig';
@@ -22,7 +23,7 @@ async function untilWork(x: string, y: string, z: string): Promise<void> {
   await untilText(page, 'work-Y', y);
   await untilText(page, 'work-Z', z);
 }
-/** Lines of MDI that this page has sent. */
+/** MDI lines that this page has sent. */
 async function linesOf(act: () => Promise<void>): Promise<string[]> {
   await page.evaluate(() => {
     const sent = window as unknown as { lines?: string[]; real?: (text: string) => void };

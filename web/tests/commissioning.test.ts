@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The held button of the steps at a machine (A7).
+// Tests the held button of the commissioning steps (A7).
 import { afterEach, beforeEach, expect, it, vi } from 'vitest';
 import { StepsSession, type StepsSocket } from '../src/first/commissioning.svelte';
 

@@ -13,7 +13,8 @@ it('knows after a reload what was dismissed', () => {
   const kept = storage();
   new Dismissed(kept).add([ERROR, NOTE]);
   const again = new Dismissed(kept);
-  expect(again.has({ ...ERROR, at: ERROR.at + 60_000 })).toBe(true); // its number is exact, also from another server
+  // its number is exact, also from another server
+  expect(again.has({ ...ERROR, at: ERROR.at + 60_000 })).toBe(true);
   expect(again.has({ ...NOTE, at: NOTE.at + 1000 })).toBe(true);
 });
 

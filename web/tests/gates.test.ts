@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Each gate in each situation, against the table of the page states.md, which is generated from task's own.
+// Tests each gate in each situation with the table of the page states.md, which is generated from task's
+// table.
 import { fileURLToPath } from 'node:url';
 import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
@@ -58,7 +59,7 @@ function readTable(): Map<string, Map<string, boolean>> {
 
 const table = readTable();
 
-/** The screen changes the mode by itself where nothing runs: what it may do is what task allows after that. */
+/** The screen changes the mode by itself while nothing runs, so it may do what task permits after that. */
 const ANY_MODE: Record<string, string[]> = { manual: ['manual', 'auto', 'mdi'], auto: ['manual', 'auto', 'mdi'], mdi: ['manual', 'auto', 'mdi'] };
 
 describe.each([
@@ -79,10 +80,11 @@ describe.each([
     if (isOpen) {
       expect(mayTask, 'the screen offers a command that task rejects').toBe(true);
     } else if (mayTask) {
-      // Task would take it, and the screen is more careful: these, and no others.
+      // Task would accept these commands, and no others; the screen is more careful.
       expect([
-        'resume proposed', // a way is confirmed in its dialog, where it is shown
-        // Task accepts resume where nothing is paused and does nothing; the screen offers it only where it does something.
+        'resume proposed', // an approach is confirmed in its own dialog
+        // Task accepts resume without effect when nothing is paused; the screen offers it only when it has an
+        // effect.
         'resume manual', 'resume auto', 'resume running', 'resume mdi', 'resume line',
         'resume away', 'line line held', 'program file estop', 'program file off', 'release away',
       ]).toContain(`${row} ${name}`);

@@ -90,7 +90,7 @@ describe('status', () => {
   it('calculates work coordinates as the interpreter does: rotate(program + G92) + G5x + tool', () => {
     const zero = [0, 0, 0, 0, 0, 0, 0, 0, 0];
     const offsets = { g5x_index: 1, g5x: [10, 20, 5, ...zero.slice(3)], g92: [1, 2, 3, ...zero.slice(3)], tool: [0, 0, 7, ...zero.slice(3)], rotation_xy_deg: 90 };
-    // program (4, 5, 6) + G92 = (5, 7, 9); turned by 90 degrees (-7, 5, 9); + G5x + tool = (3, 25, 21)
+    // program (4, 5, 6) + G92 = (5, 7, 9); rotated by 90 degrees (-7, 5, 9); + G5x + tool = (3, 25, 21)
     const work = workPosition([3, 25, 21, 0, 0, 0, 0, 0, 0], offsets);
     expect(work[0]).toBeCloseTo(4, 12);
     expect(work[1]).toBeCloseTo(5, 12);
@@ -192,7 +192,7 @@ describe('path', () => {
     expect(thinned.places[0]).toBe(0);
     expect(thinned.places[(thinned.count - 1) * 3]).toBeCloseTo(9.99, 5);
     const same: Moves = { kind: 'moves', count, places, lines: new Uint32Array(count), kinds, shades: new Uint8Array(count) };
-    expect(thin(same, 0.001)).toBe(same); // a copy would be as large
+    expect(thin(same, 0.001)).toBe(same); // a copy would have the same size
     const change = [...thinned.kinds].indexOf(1);
     expect(thinned.places[(change - 1) * 3]).toBeCloseTo(4.99, 5);
   });

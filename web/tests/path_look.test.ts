@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Colours of a path, where a pose is drawn, and the tips of lathe tools (J1, J3).
+// Tests colours of a path, the position of a pose in the picture, and the tips of lathe tools (J1, J3).
 import { expect, it } from 'vitest';
 import type { Moves } from '../src/lib/path/chunks';
 import { isPlain, placer } from '../src/lib/path/geometry';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the view Probing asks the machine for: words in the order of nc_files/probing.
+// Tests the commands of the view Probing: words in the order of nc_files/probing.
 import { readFileSync } from 'node:fs';
 import { expect, it } from 'vitest';
 import { callOf, CORNER_SIDES, EDGE_SIDES, type Probe } from '../src/lib/probing';

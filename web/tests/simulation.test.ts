@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Material removal: volumes that are known exactly, findings by line, and any move of the program at any time.
+// Tests material removal: volumes that are known exactly, findings by line, and any move of the program at
+// any time.
 import { describe, expect, it } from 'vitest';
 import { MOST_CELLS } from '../src/lib/simulation/field';
 import { Moves } from '../src/lib/simulation/moves';
@@ -142,7 +143,7 @@ describe('findings', () => {
     const hit = simulate(movesOf([SAFE, { at: [-30, 40, 10], line: 2, kind: 0 }, { at: [-30, 40, 13], line: 3, kind: 0 }, { at: [50, 40, 13], line: 4, kind: 0 }]), { fixtures }).findings.list();
     expect(hit.map((one) => [one.line, one.kinds, one.fixture])).toEqual([[2, ['fixture'], 'clamp']]);
     expect(hit[0]?.depth).toBeCloseTo(2, 3);
-    // Next to it by less than the radius of the tool, and by more.
+    // At less than the radius of the tool beside it, and at more.
     const beside = (x: number): number => simulate(movesOf([{ at: [x, 60, 5], line: 1, kind: 0 }, { at: [x, 20, 5], line: 2, kind: 0 }]), { fixtures }).findings.list().length;
     expect([beside(12.9), beside(13.1)]).toEqual([1, 0]);
   });
@@ -162,7 +163,7 @@ describe('any move of the program', () => {
     const all = wild(60);
     for (const bytes of [160e6, 8e5]) {
       const whole = simulate(movesOf(all), { tools, cell_mm: 0.6 }, { bytes, cells: 5000, moves: 4 });
-      // With little memory some checkpoints are left out.
+      // With little memory some checkpoints are omitted.
       expect(whole.checkpointCount).toBeGreaterThan(3);
       expect(whole.checkpointCount > 14).toBe(bytes === 160e6);
       for (const moves of [59, 30, 10, 29.5, 31, 0, 58.25]) {
@@ -216,7 +217,7 @@ describe('the moves of the server', () => {
 });
 
 describe('a stock from an STL file', () => {
-  /** A pyramid with a square base of 10 and a height of 6, whose lower corner is at 5, 5, -6. */
+  /** A pyramid with a square base of 10 and a height of 6, with its lower corner at 5, 5, -6. */
   const CORNERS = [[5, 5, -6], [15, 5, -6], [15, 15, -6], [5, 15, -6], [10, 10, 0]] as const;
   const FACES = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 2, 1], [0, 3, 2]] as const;
   const points = FACES.flatMap((face) => face.map((corner) => CORNERS[corner]));
@@ -231,7 +232,7 @@ describe('a stock from an STL file', () => {
       const whole = simulate(movesOf([SAFE]), { stock: stock as Stock, cell_mm: 0.05 }).field;
       expect(whole.volume() / 200).toBeCloseTo(1, 2);
       const cut = simulate(movesOf([{ at: [0, 10, -3], line: 1, kind: 0 }, { at: [20, 10, -3], line: 2, kind: 1 }]), { stock: stock as Stock, cell_mm: 0.05, tools: new Map([[1, tool({ diameter_mm: 40 })]]) }).field;
-      // What is above half its height is an eighth.
+      // The part above half its height is an eighth.
       expect(cut.volume() / 175).toBeCloseTo(1, 2);
     }
   });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A program in the worker of the simulation: its time, its lines, the picture, and orders that come while it is prepared.
+// Tests a program in the worker of the simulation: its time, its lines, the picture, and messages that arrive
+// while it is prepared.
 import { describe, expect, it } from 'vitest';
 import { Clock } from '../src/lib/simulation/clock';
 import { Display, reduced } from '../src/lib/simulation/display';

@@ -3,7 +3,7 @@ import { expect, it } from 'vitest';
 import type { Moves } from '../src/lib/path/chunks';
 import { sparse } from '../src/lib/path/sparse';
 
-/** Round and round a square of 100 by 100, `turns` times. */
+/** Several times around a square of 100 by 100, `turns` times. */
 function square(turns: number): Moves {
   const points: number[][] = [];
   for (let i = 0; i < turns; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The time left of a program, followed by its lines (J3).
+// Tests the remaining time of a program, followed by its lines (J3).
 import { expect, it } from 'vitest';
 import { Follower, Times } from '../src/lib/path/times';
 

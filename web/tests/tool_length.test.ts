@@ -34,6 +34,7 @@ it('applies the length of a loaded tool where one was active and none was set by
   expect(mustApplyLength(status(1, 17, 431), status(3, 17, 431), TABLE)).toBe(true);
   expect(mustApplyLength(status(1, 0, 490), status(3, 0, 490), TABLE)).toBe(false);
   expect(mustApplyLength(status(1, 40), status(3, 52.3), TABLE)).toBe(false);
-  expect(mustApplyLength(status(1, 40), status(3, 60, 431), TABLE)).toBe(false); // a remap of M6 has measured
+  // a remap of M6 has measured the length
+  expect(mustApplyLength(status(1, 40), status(3, 60, 431), TABLE)).toBe(false);
   expect(mustApplyLength(status(1, 40), status(3, 0, 490), TABLE)).toBe(false);
 });

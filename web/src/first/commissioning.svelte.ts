@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The steps at a machine: a socket to `millwright select --browser`, which runs them. docs/reference/api.md, First steps.
+// The commissioning steps at a machine: a socket to `millwright select --browser`, which runs them.
+// docs/reference/api.md, First steps.
 
 export type Ask = 'wait' | 'confirm' | 'hold' | 'do' | 'number' | 'choice';
 export interface Prompt {
@@ -11,7 +12,7 @@ export interface Prompt {
   unit: string;
   hazards: string[];
   watch: string;
-  /** The motion may be ended by confirming, with the button released. */
+  /** The operator may end the motion by releasing the button and confirming. */
   may_end_early: boolean;
 }
 export interface StepValue {
@@ -37,10 +38,10 @@ export interface StepsState {
   steps?: StepState[];
 }
 
-/** Shorter than the time after which a button counts as released, 250 ms. */
+/** Below the time after which a button counts as released, 250 ms. */
 const RENEWAL_MS = 80;
 
-/** What a socket is used for, so that a test can have one. */
+/** The methods of a socket that are used, so that a test can replace it. */
 export interface StepsSocket {
   onopen: (() => void) | null;
   onmessage: ((event: { data: string }) => void) | null;
@@ -50,7 +51,7 @@ export interface StepsSocket {
   close(): void;
 }
 
-/** One session: it ends with its socket, and the machine is switched off then. */
+/** One session. It ends with its socket, and the machine is then switched off. */
 export class StepsSession {
   shown = $state.raw<StepsState | null>(null);
   isClosed = $state(false);
@@ -84,7 +85,7 @@ export class StepsSession {
     this.pressedFor = -1;
   }
 
-  /** A press counts for the motion that is shown now, and for no later one. */
+  /** A press applies only to the motion that is shown now. */
   press(): void {
     this.stopRenewal();
     const number = this.shown?.number;
@@ -94,7 +95,7 @@ export class StepsSession {
     this.pressedFor = number;
     this.send({ act: 'hold' }, number);
     this.renewal = setInterval(() => {
-      // What cannot be sent at once is not sent later.
+      // Data that cannot be sent at once are not sent later.
       if (this.socket.bufferedAmount === 0) {
         this.send({ act: 'hold' }, number);
       }
@@ -110,7 +111,7 @@ export class StepsSession {
   cannot = (): void => this.send({ act: 'cannot' });
   measure = (value: number): void => this.send({ act: 'number', value });
   choose = (choice: string): void => this.send({ act: 'choice', choice });
-  /** The machine is switched off. */
+  /** Called when the machine is switched off. */
   end(): void {
     this.stopRenewal();
     this.socket.close();

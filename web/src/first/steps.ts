@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What `millwright select --browser` answers: docs/reference/api.md, First steps.
+// Answers of `millwright select --browser`: docs/reference/api.md, First steps.
 
 export interface Choice {
   ini: string;
@@ -10,9 +10,9 @@ export interface Choice {
   unit: string;
   notes: string;
   has_picture: boolean;
-  /** It can be commissioned. */
+  /** The machine can be commissioned. */
   has_steps: boolean;
-  /** Its board is simulated: the steps are practice. */
+  /** Its board is simulated, so the steps are practice. */
   is_simulated: boolean;
 }
 export interface Group {
@@ -31,7 +31,7 @@ export interface Question {
   text: string;
   form: 'choice' | 'number' | 'whole' | 'text';
   preset: string;
-  /** Why the preset is a good start. */
+  /** Reason why the preset is a good initial value. */
   reason: string;
   unit: string;
   choices?: string[];
@@ -73,7 +73,7 @@ export class Steps {
   picture = (ini: string): string => this.address('/picture', `&ini=${encodeURIComponent(ini)}`);
 }
 
-/** Those that have every word, in whatever they show. */
+/** Configurations whose displayed texts contain every word. */
 export function search(groups: Group[], text: string): Group[] {
   const words = text.toLowerCase().split(/\s+/).filter((word) => word !== '');
   return groups
@@ -92,7 +92,10 @@ export interface Section {
   questions: Question[];
 }
 
-/** Questions by what stands before the point of their key: those of the machine first, then each axis and motor. */
+/**
+ * Groups the questions by the part of their key before the point: first those of the machine, then each axis
+ * and motor.
+ */
 export function sections(questions: Question[]): Section[] {
   const found = new Map<string, Question[]>();
   for (const question of questions) {
@@ -106,7 +109,7 @@ export function sections(questions: Question[]): Section[] {
   return [...found].map(([title, list]) => ({ title, questions: list }));
 }
 
-/** A folder's name for a machine's. */
+/** A folder name for a machine name. */
 export function folderName(name: string): string {
   return name.toLowerCase().normalize('NFD').replace(/[^a-z0-9]+/g, '_').replace(/^_+|_+$/g, '') || 'machine';
 }

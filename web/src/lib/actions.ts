@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What an operator does, as commands in their order. A sequence ends with the first command that is not done.
+// Actions of an operator as sequences of commands. A sequence ends with the first command that is not done.
 import { Jogger } from './jog';
 import type { Command, Outcome } from './link';
 import { canOpen } from './gates';
@@ -55,7 +55,7 @@ export const resetEmergencyStop = (): Promise<Outcome> => send({ message: 'SetSt
 export const switchOn = (): Promise<Outcome> => send({ message: 'SetState', state: 'ON' });
 export const switchOff = (): Promise<Outcome> => send({ message: 'SetState', state: 'OFF' });
 
-/** Joints are homed in joint mode; -1: all. */
+/** Homes joints in joint mode; -1: all. */
 export function home(joint: number): Promise<Outcome> {
   return inOrder(...toMode('MANUAL'), { message: 'SetTeleop', teleop: false }, { message: 'HomeJoint', joint });
 }
@@ -75,7 +75,7 @@ function isPrepared(isJoint: boolean): boolean {
 
 const onJogsEnd: (() => void)[] = [];
 
-/** `act` is called when a jog has ended though nobody let go. */
+/** `act` is called when a jog has ended although the operator did not release it. */
 export function whenJogsEnd(act: () => void): void {
   onJogsEnd.push(act);
 }
@@ -98,7 +98,7 @@ export const jogger = new Jogger({
 
 whenLost(() => jogger.releaseAll());
 
-/** Everything that ends a touch or the attention of the operator ends what moves by it. */
+/** Ends all jogs on every event that ends a touch or the operator's attention. */
 export function endJogsWithAttention(target: Window): void {
   const end = (): void => jogger.releaseAll();
   target.addEventListener('blur', end);
@@ -150,14 +150,17 @@ export function mdi(line: string): Promise<Outcome> {
   return inOrder(...toMode('MDI'), { message: 'Mdi', line });
 }
 
-/** Task writes its parameter file, from which the path of a program is read: an offset survives a cut of the power, too. */
+/**
+ * Makes task write its parameter file, from which the path of a program is read; so an offset also survives a
+ * power cut.
+ */
 export function keepOffsets(): Promise<Outcome> {
   return canOpen(view()) === null ? sendQuietly({ message: 'SynchInterpreter' }) : Promise.resolve({ progress: 'REFUSED', reason: '' });
 }
 
 const MM_PER_INCH = 25.4;
 
-/** A length in machine units as the program in force would write it. */
+/** A length in machine units, in the active unit of the program. */
 export function inProgramUnits(value: number, letter: string): number {
   if (isAngularAxis(axisIndex(letter)) || machine.facts === null || machine.status === null) {
     return value;
@@ -167,7 +170,7 @@ export function inProgramUnits(value: number, letter: string): number {
   return isMachineInch === isInch ? value : isInch ? value / MM_PER_INCH : value * MM_PER_INCH;
 }
 
-/** The place where the tool stands becomes `value` (machine units) of the coordinate system in force. */
+/** Sets the current tool position to `value` (machine units) in the active coordinate system. */
 export function touchOff(letter: string, value: number): Promise<Outcome> {
   return mdi(`G10 L20 P0 ${letter}${inProgramUnits(value, letter).toFixed(6)}`);
 }
@@ -178,15 +181,18 @@ function copyOf(status: MachineStatus): MachineStatus {
   return JSON.parse(JSON.stringify(status)) as MachineStatus;
 }
 
-/** A status that was made after the outcome of a command: the first that comes may have been on its way before it. */
+/** A status created after the outcome of a command; the first status received may have been sent before the outcome. */
 async function laterStatus(): Promise<MachineStatus | null> {
   await untilStatus(() => true);
   await untilStatus(() => true);
   return machine.status === null ? null : copyOf(machine.status);
 }
 
-/** As T and M6 in a line of MDI: what the INI file has for a change is done, too. Where a tool length is active, that of the new tool is
- * applied by G43; under G49 none is, and what a remap of M6 has applied stays. */
+/**
+ * As T and M6 in an MDI line, including the actions that the INI file sets for a tool change. If a tool
+ * length is active, G43 applies that of the new tool; under G49 no length is applied, and a length set by a
+ * remap of M6 is kept.
+ */
 export async function changeTool(toolno: number): Promise<Outcome> {
   const before = machine.status === null ? null : copyOf(machine.status);
   const outcome = await mdi(`T${toolno} M6`);
@@ -198,7 +204,7 @@ export async function changeTool(toolno: number): Promise<Outcome> {
   return isLoaded && mustApplyLength(before, after, tools.list) ? mdi('G43') : outcome;
 }
 
-/** The length of the tool in the spindle becomes active: G43, or G49 for an empty spindle. Done when it is. */
+/** Activates the length of the tool in the spindle: G43, or G49 for an empty spindle. Done when it is active. */
 export async function applyLength(): Promise<Outcome> {
   const outcome = await mdi(machine.status?.tool.in_spindle === 0 ? 'G49' : 'G43');
   if (!isDone(outcome)) {
@@ -213,13 +219,13 @@ export async function applyLength(): Promise<Outcome> {
   return { progress: 'FAILED', reason };
 }
 
-/** The tip of the tool in the spindle stands at `value` (machine units) of the work coordinates. */
+/** Sets the tip of the tool in the spindle to `value` (machine units) of the work coordinates. */
 export async function measureTool(toolno: number, value: number): Promise<Outcome> {
   const outcome = await mdi(`G10 L10 P${toolno} Z${inProgramUnits(value, 'Z').toFixed(6)}`);
   return isDone(outcome) ? mdi('G43') : outcome;
 }
 
-/** As messages name them. */
+/** Fields as messages name them. */
 function fieldsOf(tool: Tool) {
   return {
     toolno: tool.toolno,
@@ -236,7 +242,7 @@ export function setToolEntry(tool: Tool): Promise<Outcome> {
   return send({ message: 'SetToolEntry', ...fieldsOf(tool) });
 }
 
-/** Pocket 0: one that is free. */
+/** Pocket 0: any free pocket. */
 export function addTool(tool: Tool): Promise<Outcome> {
   return send({ message: 'AddTool', ...fieldsOf(tool), comment: tool.comment });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The check of probe and setter of this screen.
+// The check of probe and setter on this screen.
 import { ContactCheck, contactFacts, type Sensor } from './contact';
 import type { Gate } from './gates';
 import { inputs } from './inputs.svelte';
@@ -9,14 +9,14 @@ const check = new ContactCheck();
 
 export const contact = $state<{ asked: Sensor | null; seen: Record<Sensor, boolean> }>({ asked: null, seen: { probe: false, setter: false } });
 
-/** To be called in an effect, in every view: what makes a contact void must not be missed. */
+/** Call it in an effect in every view, because no event that invalidates a contact may be missed. */
 export function followContact(): void {
   const { status } = machine;
   check.update(machine.isMachineUp && status !== null ? contactFacts(status) : null, contact.asked);
   Object.assign(contact.seen, check.seen);
 }
 
-/** What a cycle with `sensor` needs beside what every line of MDI needs. */
+/** Conditions for a cycle with `sensor` in addition to those of an MDI line. */
 export function canProbe(sensor: Sensor): Gate {
   const { status } = machine;
   if (inputs.known?.probe !== true) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whether probe and tool setter have shown that they work: their contact must be seen once before the first cycle.
+// Whether probe and tool setter have been tested: their contact must be detected once before the first cycle.
 import type { MachineStatus } from './status';
 
-/** The probe moves with the spindle, the setter lies on the table; both are motion.probe-input. */
+/** The probe moves with the spindle, the setter is on the table; both use motion.probe-input. */
 export type Sensor = 'probe' | 'setter';
 
 export interface ContactFacts {
@@ -23,13 +23,16 @@ export function contactFacts(status: MachineStatus): ContactFacts {
   };
 }
 
-/** A contact counts while the operator is asked for it, nothing runs, and it was seen open before. That of the probe is forgotten when
- * another tool is loaded, the spindle turns or the machine is switched off: then a cutter may be where the probe was. */
+/**
+ * A contact is accepted while the operator is asked for it, nothing runs, and the input was open before. The
+ * contact of the probe is invalid after another tool is loaded, the spindle rotates or the machine is
+ * switched off, because a cutter may then replace the probe.
+ */
 export class ContactCheck {
   private last: (ContactFacts & { asked: Sensor | null }) | null = null;
   readonly seen: Record<Sensor, boolean> = { probe: false, setter: false };
 
-  /** `now`: null while no machine is up. `asked`: what the operator is asked to touch. */
+  /** `now`: null while no machine is running. `asked`: the sensor that the operator is asked to touch. */
   update(now: ContactFacts | null, asked: Sensor | null): void {
     const last = this.last;
     this.last = now === null ? null : { ...now, asked };

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Messages that this browser has dismissed: a server sends the last ones again to a page that is loaded again.
+// Messages that this browser has dismissed, because a server sends the last messages again to a reloaded
+// page.
 
 export interface Dismissable {
   kind: string;
   text: string;
-  /** When it came. [ms] */
+  /** Time of arrival. [ms] */
   at: number;
-  /** By which task counts its messages; 0: of a note, which has none. */
+  /** Task's number of the message; 0 for a note, which has no number. */
   number: number;
-  /** Of the start of the machine that counts them; of a note, of the server. */
+  /** Start of the machine that counts the messages; for a note, of the server. */
   run: string;
 }
 
 const KEY = 'millwright.dismissed';
 const MOST_KEPT = 200;
-/** The time of a note is its age when it was sent: a page that loads slowly reads it late. */
+/** The time of a note is calculated from its age when sent, which a slowly loading page reads late. */
 const NOTE_MS = 2000;
 
 export class Dismissed {
@@ -29,7 +30,7 @@ export class Dismissed {
       const kept = JSON.parse(this.storage?.getItem(KEY) ?? '[]') as unknown;
       return Array.isArray(kept) ? (kept as Dismissable[]) : [];
     } catch {
-      return []; // no storage, or not ours
+      return []; // no storage, or no access
     }
   }
 

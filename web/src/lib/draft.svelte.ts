@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Changes of the editor that are not saved. They belong to the page, so that another view of it does not lose them.
+// Unsaved changes of the editor. They belong to the page, so another view of it does not lose them.
 import { openProgram } from './actions';
 import { uploadProgram } from './files';
 import { machine } from './machine.svelte';
 import { openName, reloadPath } from './program.svelte';
 
 export interface Draft {
-  /** The program in the folder of programs. */
+  /** Name in the folder of programs. */
   name: string;
   text: string;
 }
@@ -28,13 +28,15 @@ export function discardDraft(): void {
   machine.unsaved = null;
 }
 
-/** The unsaved text of this program, null where there is none. */
+/** The unsaved text of this program, null if there is none. */
 export function draftOf(name: string): string | null {
   return draft.now?.name === name ? draft.now.text : null;
 }
 
-/** Writes the draft to its file; an error of the server is thrown. Task runs what it has opened: the draft of the open program is
- * saved when task has opened the new text. */
+/**
+ * Writes the draft to its file; throws an error of the server. Task runs the text that it has opened, so the
+ * draft of the open program is saved when task has opened the new text.
+ */
 export async function saveDraft(): Promise<void> {
   const written = draft.now;
   if (written === null) {
@@ -51,14 +53,14 @@ export async function saveDraft(): Promise<void> {
   reloadPath();
 }
 
-/** What was typed while the text was written is a draft of its own. */
+/** Text typed during the write becomes a new draft. */
 function forgetWritten(written: Draft): void {
   if (draft.now?.name === written.name && draft.now.text === written.text) {
     discardDraft();
   }
 }
 
-/** Closing or reloading the page with unsaved changes asks first. */
+/** Asks before the page is closed or reloaded with unsaved changes. */
 export function askBeforeLeaving(target: Window): () => void {
   const ask = (event: BeforeUnloadEvent): void => {
     if (draft.now !== null) {

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A drag of a knob along its track. A swipe that scrolls the page is no drag, and a flick changes little.
+// A drag of a knob along its track. A swipe that scrolls the page is not a drag, and a short flick has little
+// effect.
 
-/** Less than this is a touch. [px] */
+/** A shorter movement is a touch. [px] */
 const SLOP_PX = 8;
-/** A drag that lasts so long is deliberate. */
+/** A longer drag is deliberate. */
 export const DELIBERATE_MS = 500;
 
 export interface Scale {
   min: number;
   max: number;
   step: number;
-  /** What a drag changes before it is deliberate, up or down. */
+  /** Change that a drag can make before it is deliberate, up or down. */
   free: number;
-  /** Of the track, as far as the knob travels. [px] */
+  /** Travel of the knob on the track. [px] */
   width: number;
 }
 
@@ -36,7 +37,7 @@ export class Drag {
     this.y = at.y;
   }
 
-  /** The value that the pointer is at; null where this is no drag. */
+  /** The value at the pointer; null if this is not a drag. */
   move(at: { x: number; y: number }, nowMs: number): number | null {
     const [dx, dy] = [at.x - this.x, at.y - this.y];
     if (this.begunMs === null) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The text of a program: numbered lines, colours for words of G-code, errors at their place, the running line.
+// The text of a program: numbered lines, colours for words of G-code, errors at their position, the running
+// line.
 import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language';
 import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint';
@@ -14,7 +15,7 @@ export interface Fault {
   text: string;
 }
 
-/** "path:line:column: text", as errors of programs have it. */
+/** Parses "path:line:column: text", the form of errors of programs. */
 export function parseFault(text: string): Fault | null {
   const match = /^(?:.*?):(\d+):(\d+): (?:error: )?([\s\S]*)$/.exec(text);
   return match === null ? null : { line: Number(match[1]), column: Number(match[2]), text: match[3] ?? '' };
@@ -112,7 +113,10 @@ export class ProgramEditor {
     return this.view.state.doc.toString();
   }
 
-  /** The cursor stays where it is if the text is the same: a program is read again when offsets change. */
+  /**
+   * The cursor remains at its position if the text is unchanged, because a program is read again when offsets
+   * change.
+   */
   show(text: string): void {
     if (text === this.text) {
       return;
@@ -134,7 +138,7 @@ export class ProgramEditor {
     this.view.dispatch(setDiagnostics(this.view.state, diagnostics));
   }
 
-  /** The cursor goes to a line, which is brought into view. */
+  /** Moves the cursor to a line and scrolls to it. */
   goTo(line: number): void {
     const { doc } = this.view.state;
     const at = doc.line(Math.min(Math.max(line, 1), doc.lines)).from;
@@ -142,7 +146,7 @@ export class ProgramEditor {
     this.view.focus();
   }
 
-  /** 0: none. It is brought into view when it changes. */
+  /** 0: none. Scrolls to the line when it changes. */
   showRunning(line: number): void {
     if (line === this.runningLine) {
       return;

@@ -27,12 +27,12 @@ export async function listPrograms(): Promise<ProgramFile[]> {
   return told.files;
 }
 
-/** `isMade`: what a filter has made of it. */
+/** `isMade`: reads the program that a filter has created from the file. */
 export async function readProgram(name: string, isMade = false): Promise<string> {
   return (await ask('GET', `${address(name)}${isMade ? '?made' : ''}`)).text();
 }
 
-/** The version that the last save has replaced; null where there is none. */
+/** The version that the last save has replaced; null if there is none. */
 export async function readFormer(name: string): Promise<string | null> {
   const answer = await fetch(`${address(name)}?former`);
   if (answer.status === 404) {
@@ -47,7 +47,7 @@ export async function readFormer(name: string): Promise<string | null> {
 
 type FilterLine = { progress: number } | { made: string } | { error: string };
 
-/** Runs a file's filter; gives the path of the program. Ends with the signal. */
+/** Runs the filter of a file; returns the path of the program. Ends with the signal. */
 export async function runFilter(name: string, tell: (percent: number) => void, signal: AbortSignal): Promise<string> {
   const answer = await fetch(`/api/filter?file=${encodeURIComponent(name)}`, { method: 'POST', signal });
   if (!answer.ok || answer.body === null) {
@@ -80,7 +80,7 @@ export async function deleteProgram(name: string): Promise<void> {
   await ask('DELETE', address(name));
 }
 
-/** In pieces: a jog renews its lease on the same connection to the machine, and may not wait for a file. */
+/** Sends the file in pieces, because a jog renews its lease on the same connection and must not wait for a file. */
 export async function uploadProgram(name: string, content: Blob, tell: (share: number) => void): Promise<void> {
   if (content.size === 0) {
     await ask('PUT', address(name), '');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which commands are possible now; if not, the reason and the remedy. The machine checks again and decides;
-// gates disable buttons whose commands it would reject. No stop has a gate.
+// The commands that are possible now; otherwise the reason and the remedy. Gates disable buttons whose
+// commands the machine would reject; the machine checks again and decides. Stops have no gate.
 import type { TextKey } from './i18n/en';
 import type { Values } from './i18n/text';
 import type { MachineFacts, MachineStatus } from './status';
@@ -10,7 +10,7 @@ export interface Closed {
   values?: Values;
 }
 
-/** Nothing where it is open. */
+/** Null if the command is possible. */
 export type Gate = Closed | null;
 
 export interface View {
@@ -20,13 +20,13 @@ export interface View {
   client: number;
   status: MachineStatus | null;
   facts: MachineFacts | null;
-  /** The program whose changes in the editor are not saved. */
+  /** The program with unsaved changes in the editor. */
   unsaved: string | null;
 }
 
 type Situation = 'estop' | 'off' | 'idle' | 'running' | 'held' | 'proposed' | 'away' | 'line';
 
-/** In the words of states.md, with those of the modes put together. */
+/** The situation in the words of states.md, with those of the modes combined. */
 export function situation(status: MachineStatus): Situation {
   const { task } = status;
   if (task.state === 'ESTOP') {
@@ -58,7 +58,7 @@ const BUSY: Partial<Record<Situation, TextKey>> = {
   line: 'gate.line',
 };
 
-/** What every command but a stop needs. */
+/** Conditions for all commands except stops. */
 export function reach(view: View): Gate {
   if (!view.isConnected) {
     return { key: 'gate.connection' };
@@ -84,7 +84,7 @@ function atPower(status: MachineStatus): Gate {
 
 type Rule = (status: MachineStatus, facts: MachineFacts) => Gate;
 
-/** A gate made of reach() and of rules in their order: the first that is closed is what has to be done first. */
+/** A gate from reach() and rules in order; the first closed rule is shown, because it must be fulfilled first. */
 function gate(...rules: Rule[]): (view: View) => Gate {
   return (view) => {
     const first = reach(view);
@@ -106,7 +106,7 @@ const isHomed: Rule = (status, facts) =>
 const isIdle: Rule = (status) => closed(BUSY[situation(status)]);
 const isNotHoming: Rule = (status) => (status.trajectory.is_homing ? { key: 'gate.homing' } : null);
 
-/** What changes the configuration under way: values of HAL, the oscilloscope in the servo's thread. */
+/** Changes of the running configuration: HAL values, and the oscilloscope in the servo thread. */
 export function canConfigure(view: View): Gate {
   return reach(view) ?? (view.role === 'configure' ? null : { key: 'gate.configure' });
 }
@@ -120,7 +120,7 @@ export const canJog = gate(atPower, isNotHoming, (status) => {
 });
 export const canHome = gate(atPower, isIdle, isNotHoming);
 export const canOpen = gate(isIdle);
-/** Task would run the file, and the editor shows another text. */
+/** False if the editor shows another text than the file that task would run. */
 function isSaved(view: View): Gate {
   const { status, facts, unsaved } = view;
   const isOpen = unsaved !== null && status?.task.program === `${facts?.program_prefix}/${unsaved}`;
@@ -140,23 +140,23 @@ const canStepFile = gate(atPower, isNotHoming, isHomed, (status) => {
   if (now === 'idle') {
     return status.task.program === '' ? { key: 'gate.program' } : null;
   }
-  // In a program that runs a step pauses at the end of the move under way.
+  // In a running program a step pauses at the end of the current move.
   const canBe = now === 'running' || now === 'held' || (now === 'line' && status.task.is_paused);
   return canBe ? null : closed(BUSY[now]);
 });
-/** A step of a program that already runs is one of the text that was saved. */
+/** A step of a running program applies to the saved text. */
 export const canStep = (view: View): Gate =>
   canStepFile(view) ?? (view.status !== null && situation(view.status) === 'idle' ? isSaved(view) : null);
 export const canRelease = gate(atPower, (status) => {
   const now = situation(status);
   return now === 'held' || now === 'proposed' ? null : { key: 'gate.not_held' };
 });
-/** A line behind another one waits. */
+/** A line after a running line waits. */
 export const canMdi = gate(atPower, isNotHoming, isHomed, (status) => {
   const now = situation(status);
   return now === 'line' && !status.task.is_paused ? null : closed(BUSY[now]);
 });
-/** Set an offset: as a line, but nothing may run before it. */
+/** Setting an offset needs the same as a line, and nothing may run before it. */
 export const canTouchOff = gate(atPower, isNotHoming, isHomed, isIdle);
 export const canEnergise = gate(atPower);
 export const canOverride = gate();

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL by docs/reference/api.md: what there is, what is watched, the oscilloscope.
+// HAL by docs/reference/api.md: objects, watched values, the oscilloscope.
 import type { HalValue } from './link';
 
 export interface HalName {
   name: string;
   kind: 'pin' | 'signal' | 'param';
   type: string;
-  /** IN, OUT, I/O, RO, RW; of a signal empty. */
+  /** IN, OUT, I/O, RO, RW; empty for a signal. */
   dir: string;
-  /** Of a pin its signal, of a signal its pins. */
+  /** For a pin its signal, for a signal its pins. */
   link: string;
   value: HalValue;
-  /** HAL would take a value from a person. */
+  /** HAL accepts a value from a person. */
   canSet: boolean;
 }
 
@@ -43,7 +43,7 @@ export interface ScopeRecord {
   moved: string[];
 }
 
-/** Names that this screen watches: they stay while it shows another view. */
+/** Names that this screen watches; they are kept while it shows another view. */
 export const watchList = $state<{ names: string[] }>({ names: [] });
 
 async function ask<T>(method: string, path: string, body?: object): Promise<T> {
@@ -65,13 +65,16 @@ export async function listHal(): Promise<HalName[]> {
   return all.sort((a, b) => a.name.localeCompare(b.name, 'en', { numeric: true }));
 }
 
-/** All words of `text` stand somewhere in the name, its link or its kind. */
+/** True if all words of `text` are in the name, its link or its type. */
 export function matches(one: HalName, text: string): boolean {
   const whole = `${one.name} ${one.link} ${one.kind} ${one.type}`.toLowerCase();
   return text.toLowerCase().split(/\s+/).every((word) => whole.includes(word));
 }
 
-/** With `pulseMs` the server puts the old value back after that time: a page that dies meanwhile leaves nothing set. */
+/**
+ * With `pulseMs` the server restores the old value after that time, so a page that fails in between leaves
+ * nothing set.
+ */
 export const setHal = (name: string, value: string, pulseMs = 0): Promise<unknown> =>
   ask('PUT', `/api/hal/${encodeURIComponent(name)}`, pulseMs > 0 ? { value, pulse_ms: pulseMs } : { value });
 
@@ -81,7 +84,7 @@ export const endScope = (): Promise<{ state: ScopeState }> => ask('DELETE', '/ap
 export const forceScope = (): Promise<{ state: ScopeState }> => ask('POST', '/api/scope/force');
 export const scopeRecord = (): Promise<ScopeRecord> => ask('GET', '/api/scope/record');
 
-/** As other programs read it: a headline, then a line for each sample. */
+/** In the format of other programs: a header, then a line for each sample. */
 export function csvOf(record: ScopeRecord): string {
   const lines = [['time_s', ...record.names].join(',')];
   record.times_s.forEach((time, i) => lines.push([time, ...record.columns.map((column) => column[i] ?? '')].join(',')));

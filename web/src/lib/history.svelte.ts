@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The last minute of speeds and following errors, for the plots. Memory stays as it is, however long it runs.
+// The last minute of speeds and following errors, for the plots. Memory is constant.
 
 export const SAMPLES = 1200;
 
@@ -11,7 +11,7 @@ export interface History {
 }
 
 const kept: History = { times: [], velocity: [], ferrors: [] };
-/** Rises with each sample, so that who draws knows. */
+/** Increases with each sample, so that plots are updated. */
 export const history = $state({ count: 0 });
 
 export function recorded(): History {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which inputs of motion have a source in HAL (GET /api/inputs): of those without one the status shows a preset, not a measurement.
+// The inputs of motion that have a source in HAL (GET /api/inputs). For inputs without a source the status
+// shows a preset, not a measurement.
 import { machine } from './machine.svelte';
 
 export interface Inputs {
@@ -7,7 +8,7 @@ export interface Inputs {
   spindles: { speed_in: boolean; at_speed: boolean }[];
 }
 
-/** null: not known, as no machine is up or its HAL cannot be read. */
+/** null: unknown, because no machine is running or its HAL cannot be read. */
 export const inputs = $state<{ known: Inputs | null }>({ known: null });
 
 const READ_AGAIN_MS = 5000;
@@ -17,11 +18,11 @@ export async function readInputs(): Promise<void> {
     const answer = await fetch('/api/inputs');
     inputs.known = answer.ok ? ((await answer.json()) as Inputs) : null;
   } catch {
-    inputs.known = null; // no connection: the screen shows that
+    inputs.known = null; // no connection; the screen shows this
   }
 }
 
-/** To be called in an effect: reads them while a machine is up, again and again as HAL may be linked later. */
+/** Call it in an effect: reads the inputs periodically while a machine is running, because HAL may be linked later. */
 export function followInputs(): (() => void) | undefined {
   if (!machine.isMachineUp) {
     inputs.known = null;

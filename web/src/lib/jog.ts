@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs as leases: motion itself ends a continuous jog that is not renewed, so that an axis stops after a frozen page, a cut cable or
-// a killed server. The end of the touch ends the jog for any reason; nothing here starts one again.
+// Jogs with leases: motion ends a continuous jog that is not renewed, so that an axis stops after a frozen
+// page, a cut cable or a killed server. The end of the touch ends the jog for any reason; nothing here
+// restarts it.
 import type { Command, Outcome } from './link';
 
 export const LEASE_MS = 100;
@@ -8,21 +9,21 @@ export const RENEWAL_MS = 30;
 
 export interface JogIo {
   post(command: Command): Promise<Outcome>;
-  /** Brings mode and kind of motion about; false: it cannot, and has said why. */
+  /** Sets mode and jog mode; false if this is not possible, which has been reported. */
   prepare(isJoint: boolean): Promise<boolean>;
   isPrepared(isJoint: boolean): boolean;
   every(act: () => void, ms: number): unknown;
   cancel(timer: unknown): void;
-  /** A jog has ended though nobody let go. */
+  /** Called when a jog has ended although the operator did not release it. */
   ended(reason: string): void;
 }
 
 export interface Jog {
   isJoint: boolean;
   index: number;
-  /** With its sign; units per second. */
+  /** Signed; units per second. */
   velocity: number;
-  /** Distance, above 0; null: as long as it is held. */
+  /** Distance, above 0; null: continuous while held. */
   increment: number | null;
 }
 
@@ -53,7 +54,7 @@ export class Jogger {
       return;
     }
     if (this.held.get(key) !== held) {
-      return; // released while the mode was changing
+      return; // released during the change of mode
     }
     if (jog.increment !== null) {
       this.drop(key, held); // ends by itself; a release does not stop it
@@ -63,7 +64,7 @@ export class Jogger {
     await this.hold(key, held);
   }
 
-  /** Ends what this axis or joint does; at once, whatever is under way. */
+  /** Ends the jogs of this axis or joint at once, independent of other operations. */
   release(isJoint: boolean, index: number): void {
     const key = `${isJoint ? 'joint' : 'axis'} ${index}`;
     const held = this.held.get(key);
@@ -76,7 +77,7 @@ export class Jogger {
     }
   }
 
-  /** With its sign; the jog goes on with it. Another direction ends the jog. */
+  /** Signed; the jog continues with this speed. Another direction ends the jog. */
   changeSpeed(isJoint: boolean, index: number, velocity: number): void {
     const held = this.held.get(`${isJoint ? 'joint' : 'axis'} ${index}`);
     if (held === undefined) {
@@ -86,7 +87,7 @@ export class Jogger {
       this.release(isJoint, index);
       return;
     }
-    held.jog = { ...held.jog, velocity }; // the next renewal says it
+    held.jog = { ...held.jog, velocity }; // sent with the next renewal
   }
 
   releaseAll(): void {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What can be jogged now, and how fast.
+// The targets that can be jogged now, and their speed.
 import { jogger } from './actions';
 import { letterOfJoint } from './joints';
 import { machine } from './machine.svelte';
@@ -11,16 +11,16 @@ export interface Target {
   index: number;
   letter: string;
   name: string;
-  /** On its buttons. */
+  /** Label of its buttons. */
   label: string;
-  /** The same with any label. */
+  /** A short name, independent of the label. */
   short: string;
   isAngular: boolean;
 }
 
 export const jogKeys = $state({ isOn: true });
 
-/** Axes once all joints are homed, else joints one by one. */
+/** Axes when all joints are homed, else single joints. */
 export function targets(): Target[] {
   const { facts, status } = machine;
   if (facts === null || status === null) {
@@ -44,7 +44,7 @@ export function targets(): Target[] {
   });
 }
 
-/** The share of the maximum speed that jogs have: the operator's, else that of [DISPLAY]DEFAULT_..._VELOCITY. */
+/** The fraction of the maximum speed for jogs: the operator's, else that of [DISPLAY]DEFAULT_..._VELOCITY. */
 export function jogShare(isAngular: boolean): number {
   const { facts } = machine;
   const highest = (isAngular ? facts?.max_angular_velocity : facts?.max_linear_velocity) ?? 0;
@@ -73,7 +73,7 @@ export function release(target: { isJoint: boolean; index: number }): void {
   jogger.release(target.isJoint, target.index);
 }
 
-/** The target that a key means. */
+/** The target of a key. */
 export function targetOfKey(letter: string): Target | undefined {
   return targets().find((one) => one.letter === letter);
 }

@@ -26,7 +26,7 @@ const JOG_KEYS: Record<string, [string, number]> = {
   '[': ['A', -1],
 };
 
-/** Where keys have a meaning of their own. */
+/** True if keys have another meaning in the focused element. */
 export function takesKeys(target: EventTarget | null): boolean {
   if (!(target instanceof HTMLElement)) {
     return false;
@@ -50,7 +50,7 @@ function onDown(event: KeyboardEvent, actions: KeyActions): boolean {
     return false;
   }
   if (document.querySelector('[role="dialog"]') !== null) {
-    return false; // who answers a question begins nothing else
+    return false; // while a question is shown, keys begin nothing else
   }
   const jog = JOG_KEYS[event.key];
   if (jog !== undefined && actions.areJogKeysOn()) {

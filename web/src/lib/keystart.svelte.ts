@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A key that would move the machine by its program asks first: something that falls on the keyboard starts nothing.
+// A key that would move the machine by its program first asks for confirmation, so that an object that falls
+// on the keyboard starts nothing.
 import * as actions from './actions';
 import { canResume, canRun, canStep, type Gate, type View } from './gates';
 import type { TextKey } from './i18n/en';
@@ -13,10 +14,13 @@ export const STARTS: Record<Start, { gate: (view: View) => Gate; name: TextKey; 
   step: { gate: canStep, name: 'cycle.step', act: actions.step },
 };
 
-/** `isStepping`: the operator has confirmed a step of this program, and nothing has been run or resumed by keys since. */
+/**
+ * `isStepping`: the operator has confirmed a step of this program, and nothing has been run or resumed by
+ * keys since.
+ */
 export const keyStart = $state<{ asked: Start | null; isStepping: boolean }>({ asked: null, isStepping: false });
 
-/** A key was pressed, and its gate is open. */
+/** Called when a key was pressed and its gate is open. */
 export function startByKey(start: Start): void {
   const isUnderWay = machine.status !== null && machine.status.task.interp_state !== 'IDLE';
   if (start === 'step' && keyStart.isStepping && isUnderWay) {
@@ -35,7 +39,7 @@ export function confirmStart(): void {
   }
 }
 
-/** The program has ended: its question is void, and the next program is another decision. */
+/** Called when the program has ended: its question is invalid, and the next program needs a new decision. */
 export function forgetStart(): void {
   keyStart.asked = null;
   keyStart.isStepping = false;

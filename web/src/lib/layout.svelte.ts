@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How much room there is: a workshop panel, a small one, or a phone.
+// The available space: a workshop panel, a small panel, or a phone.
 
 export type Room = 'wide' | 'medium' | 'narrow';
 

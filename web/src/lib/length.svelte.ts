@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The active tool length of this machine, in words.
+// The active tool length of this machine as text.
 import { t } from './i18n/index.svelte';
 import { machine } from './machine.svelte';
 import { toolLength, type ToolLength } from './tool_length';
@@ -24,12 +24,15 @@ export function lengthFacts(length: ToolLength): string {
   return `${spindle} ${active}`;
 }
 
-/** What makes the length that of the tool in the spindle. */
+/** The action that activates the length of the tool in the spindle. */
 export function lengthCode(length: ToolLength): string {
   return length.inSpindle === 0 ? 'G49' : 'G43';
 }
 
-/** What is to be known before a zero is set along `letters`; null where it is set with the length of the tool in the spindle. */
+/**
+ * A note to be shown before a zero is set along `letters`; null if it is set with the length of the tool in
+ * the spindle.
+ */
 export function wrongLength(letters: readonly string[]): ToolLength | null {
   const length = activeLength();
   return length !== null && length.wrongAxes.some((letter) => letters.includes(letter)) ? length : null;

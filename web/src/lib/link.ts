@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The socket to the server: commands with ids and outcomes, the status, messages; joins again by itself.
+// The socket to the server: commands with ids and outcomes, the status, messages. It reconnects by itself.
 
 export type Progress = 'STARTED' | 'DONE' | 'REFUSED' | 'FAILED';
 
@@ -15,16 +15,16 @@ export interface Command {
 
 export interface Message {
   number: number;
-  /** Of the start of the machine that counts them. */
+  /** Start of the machine that counts the messages. */
   run: string;
   kind: 'OPERATOR_ERROR' | 'OPERATOR_TEXT' | 'OPERATOR_DISPLAY';
   text: string;
 }
 
-/** null: there is no such name, or its number is not finite. */
+/** null: the name does not exist, or its number is not finite. */
 export type HalValue = number | boolean | null;
 
-/** What a pin of HAL asks the operator, or tells as long as it lasts ('none'). */
+/** A question of a HAL pin to the operator, or a text that is shown while the pin is set ('none'). */
 export interface Question {
   id: string;
   number: number;
@@ -44,16 +44,16 @@ export interface Hello {
   session: string;
 }
 
-/** What the link tells; every call comes from the socket's events. */
+/** Events of the link; all calls come from the socket's events. */
 export interface LinkEvents {
   opened(hello: Hello): void;
   closed(): void;
   status(delta: Record<string, unknown>, isWhole: boolean): void;
-  /** `ageMs`: it came so long before this connection was told of it. */
+  /** `ageMs`: age of the message when this connection received it. */
   message(message: Message, ageMs: number): void;
   machine(isUp: boolean, client: number, reason: string): void;
   roundTrip(ms: number): void;
-  /** Task has not reported for so long; 0: it does again. */
+  /** Task has not reported for this time; 0: it reports again. */
   silent(seconds: number): void;
   values(values: Record<string, HalValue>): void;
   questions(questions: Question[]): void;
@@ -79,7 +79,7 @@ export interface LinkOptions {
 
 const OPEN = 1;
 const PING_MS = 1000;
-/** Nothing heard for so long: the connection is gone, whatever the socket says. */
+/** After this time without data the connection counts as lost, whatever the socket reports. */
 const SILENCE_MS = 3000;
 const SHORTEST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 4000;
@@ -131,23 +131,23 @@ export class Link {
     return this.socket?.readyState === OPEN;
   }
 
-  /** How long ago the server was heard last. [ms] */
+  /** Time since the last data of the server. [ms] */
   get silence(): number {
     return this.options.now() - this.heardAt;
   }
 
-  /** Sends at once or not at all: nothing waits for a connection, so that nothing comes late. */
+  /** Sends at once or not at all; nothing waits for a connection, so nothing arrives late. */
   post(command: Command, onStarted?: (outcome: Outcome) => void): Promise<Outcome> {
     if (!this.isOpen || this.socket === null) {
       return Promise.resolve({ progress: 'FAILED', reason: 'no connection to the machine: nothing was sent' });
     }
     const id = ++this.lastId;
-    // The server shortens the lease of a jog by what the text was late.
+    // The server shortens the lease of a jog by the delay of the text.
     this.socket.send(JSON.stringify({ id, command, sent: this.options.now() }));
     return new Promise((resolve) => this.pending.set(id, { done: resolve, started: onStarted }));
   }
 
-  /** Names of HAL whose values are told from now on, by this connection. */
+  /** HAL names whose values are sent on this connection from now on. */
   look(names: readonly string[]): void {
     if (this.isOpen) {
       this.socket?.send(JSON.stringify({ watch: names }));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Who this screen is to the server. A token goes into a cookie that no script can read; nothing of it is kept here.
+// The role of this screen at the server. A token is stored in a cookie that scripts cannot read, and not
+// here.
 
 export interface Login {
   role: string;
@@ -17,7 +18,7 @@ async function ask(method: string, body?: object): Promise<Login> {
   return { role: told.role ?? '', protection: told.protection ?? '' };
 }
 
-/** The token of an address that ends in #token=..., which is taken out of sight and of the history. */
+/** The token of an address that ends in #token=..., which is removed from the address bar and the history. */
 function tokenOfAddress(): string | null {
   const found = /^#token=([\w-]+)$/.exec(location.hash)?.[1] ?? null;
   if (found !== null) {
@@ -38,12 +39,12 @@ export async function enter(token: string): Promise<boolean> {
   }
 }
 
-/** Whether a token is wanted, and none that is good is there. */
+/** True if a token is required and no valid one is present. */
 export async function checkLogin(): Promise<void> {
   try {
     login.isNeeded = (await ask('GET')).role === '';
   } catch {
-    // No server answers: the connection state shows this.
+    // No server answers; the connection state shows this.
   }
 }
 

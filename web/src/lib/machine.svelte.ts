@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine as this page knows it: one socket, one status, the messages, and what they mean together.
+// The machine as this page sees it: one socket, one status, the messages, and their combination.
 import { Dismissed } from './dismissed';
 import type { View } from './gates';
 import { record } from './history.svelte';
@@ -9,26 +9,26 @@ import { Link, type Command, type HalValue, type Message, type Outcome, type Que
 import { mergeDelta, type MachineFacts, type MachineStatus } from './status';
 
 export interface Notice {
-  /** Of the page, rising. */
+  /** Unique in the page, increasing. */
   id: number;
   kind: Message['kind'] | 'LOCAL';
   text: string;
   at: Date;
-  /** By which task counts its messages; 0: none. */
+  /** Task's number of the message; 0: none. */
   number: number;
-  /** Of the start of the machine that counts them; of a note, of the server. */
+  /** Start of the machine that counts the messages; for a note, of the server. */
   run: string;
   isRead: boolean;
 }
 
 const MOST_NOTICES = 300;
-/** What comes as the outcome of a command and as a message is one thing to tell. */
+/** Time within which an outcome and a message with the same text are shown only once. */
 const SAME_MS = 2000;
 const WAIT_FOR_MESSAGE_MS = 300;
 const STALE_MS = 1000;
 
 interface Known {
-  /** The program whose changes in the editor of this page are not saved. */
+  /** The program with unsaved changes in the editor of this page. */
   unsaved: string | null;
   isConnected: boolean;
   hasConnected: boolean;
@@ -42,9 +42,9 @@ interface Known {
   status: MachineStatus | null;
   facts: MachineFacts | null;
   roundTripMs: number | null;
-  /** How old the status is, once it is too old to be shown as if it were current. [s] */
+  /** Age of the status, if it is too old to be shown as current. [s] */
   staleSeconds: number | null;
-  /** Task has not reported to the server for so long. */
+  /** Time for which task has not reported to the server. */
   silentSeconds: number | null;
 }
 
@@ -74,14 +74,14 @@ let lastMessage = 0;
 let lastRun = '';
 const onLost: (() => void)[] = [];
 
-/** `act` is called when the connection or the machine goes. */
+/** `act` is called when the connection or the machine is lost. */
 export function whenLost(act: () => void): void {
   onLost.push(act);
 }
 
 const onStatus: (() => void)[] = [];
 
-/** When `isTrue` of a status that comes from now on, or after `ms` when it never is. */
+/** Waits until `isTrue` of a status that arrives from now on, at most `ms`. */
 export async function untilStatus(isTrue: (status: MachineStatus) => boolean, ms = 2000): Promise<void> {
   const deadline = performance.now() + ms;
   do {
@@ -103,13 +103,13 @@ function storage(): Storage | null {
   try {
     return localStorage;
   } catch {
-    return null; // a browser that keeps nothing
+    return null; // a browser without storage
   }
 }
 
 const dismissed = new Dismissed(storage());
 
-/** All messages that are shown now are read, also after this page is loaded again. */
+/** Marks all messages shown now as read, also after a reload of this page. */
 export function dismissAll(): void {
   const fresh = notices.list.filter((one) => !one.isRead);
   fresh.forEach((one) => (one.isRead = true));
@@ -118,7 +118,7 @@ export function dismissAll(): void {
   );
 }
 
-/** What came `ageMs` ago. A server tells a screen that connects what came before. */
+/** Adds a message that was received `ageMs` ago. A server sends earlier messages to a screen that connects. */
 export function tell(kind: Notice['kind'], text: string, ageMs = 0, number = 0, run = machine.session): void {
   const at = new Date(Date.now() - ageMs);
   const isKnown = notices.list.some((one) => one.text === text && Math.abs(at.getTime() - one.at.getTime()) < SAME_MS);
@@ -132,7 +132,7 @@ export function tell(kind: Notice['kind'], text: string, ageMs = 0, number = 0, 
   }
 }
 
-/** Something that this page itself has to say. */
+/** Adds a message of this page itself. */
 export function tellLocally(text: string): void {
   tell('LOCAL', text);
 }
@@ -237,7 +237,7 @@ const link = new Link(
   },
 );
 
-/** What HAL asks. */
+/** Questions of HAL. */
 export const questions = $state<{ list: Question[] }>({ list: [] });
 
 export async function answerQuestion(question: Question, yes: boolean): Promise<void> {
@@ -247,11 +247,11 @@ export async function answerQuestion(question: Question, yes: boolean): Promise<
   }
 }
 
-/** What is watched in HAL, as told last. */
+/** Watched HAL values, as last received. */
 export const halValues = $state<Record<string, HalValue>>({});
 let watched: string[] = [];
 
-/** From now on `halValues` has these names and no others. */
+/** From now on `halValues` contains exactly these names. */
 export function watchHal(names: readonly string[]): void {
   watched = [...names];
   for (const name of Object.keys(halValues)) {
@@ -269,12 +269,12 @@ export function connect(): void {
   }, 500);
 }
 
-/** Without the word that messages have between place and text. */
+/** The message without the severity between position and text. */
 function essence(text: string): string {
   return text.replace(': error: ', ': ').split('\n')[0] ?? '';
 }
 
-/** Task tells most of what it refuses as a message, too, which may come a little later. */
+/** Task reports most rejections also as a message, which may arrive slightly later. */
 function tellUnlessMessage(reason: string): void {
   setTimeout(() => {
     const since = Date.now() - SAME_MS;
@@ -285,7 +285,7 @@ function tellUnlessMessage(reason: string): void {
   }, WAIT_FOR_MESSAGE_MS);
 }
 
-/** Sends a command; what is refused or fails is told to the operator, too. */
+/** Sends a command; a rejection or failure is also shown to the operator. */
 export async function send(command: Command, onStarted?: (outcome: Outcome) => void): Promise<Outcome> {
   const outcome = await link.post(command, onStarted);
   if (outcome.progress === 'REFUSED' || outcome.progress === 'FAILED') {
@@ -294,7 +294,7 @@ export async function send(command: Command, onStarted?: (outcome: Outcome) => v
   return outcome;
 }
 
-/** As send(), for what its caller tells itself. */
+/** As send(), but the caller reports failures itself. */
 export function sendQuietly(command: Command): Promise<Outcome> {
   return link.post(command);
 }

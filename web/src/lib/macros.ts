@@ -6,7 +6,10 @@ export interface Macro {
   lines: string[];
 }
 
-/** "G0 X0; G0 Y0, Left\nCorner": lines with `;` between them, and behind the last comma a label with `\n` between its lines. */
+/**
+ * "G0 X0; G0 Y0, Left\nCorner": lines separated by `;`, and after the last comma a label with `\n` between
+ * its lines.
+ */
 export function macroOf(text: string): Macro {
   const comma = text.lastIndexOf(',');
   const commands = comma < 0 ? text : text.slice(0, comma);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Steps of an override: each touch counts from what the touches before it have requested, although the status follows later.
+// Steps of an override. Each touch is relative to the sum of the earlier touches, although the status follows
+// later.
 
-/** For so long after its command a request counts, where the machine does not report it. [ms] */
+/** A request counts for this time after its command if the machine does not report it. [ms] */
 const LATE_MS = 500;
 
 export interface NudgeRange {
@@ -20,7 +21,7 @@ export class Nudger {
     private readonly now: () => number,
   ) {}
 
-  /** What is requested, or what the machine reports where all requests are done. */
+  /** The requested value, or the reported value if all requests are done. */
   current(reported: number): number {
     const isLate = !this.isSending && this.now() - this.sentAt > LATE_MS;
     if (this.wanted !== null && !this.isSending && (this.wanted === reported || isLate)) {
@@ -33,7 +34,7 @@ export class Nudger {
     this.set(Math.min(Math.max(this.current(reported) + by, range.min), range.max));
   }
 
-  /** One command at a time; of the requests that come meanwhile the newest is sent. */
+  /** One command at a time; of the requests that arrive in this time the newest is sent. */
   set(value: number): void {
     this.wanted = value;
     if (!this.isSending) {

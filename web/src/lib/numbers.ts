@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Numbers as people write and read them (A8): a comma or a point separates decimals, and one of them only. Sums and fractions.
+// Numbers as persons write and read them (A8): one comma or point separates decimals. Also sums and
+// fractions.
 
-/** Blanks that people and spreadsheets put between groups of three digits: plain, no-break, narrow and thin ones. */
+/** Blanks that persons and spreadsheets put between groups of three digits: plain, no-break, narrow and thin ones. */
 const GROUPS = /^([+-]?\d{1,3})(?:[ \u00a0\u2007\u2009\u202f]\d{3})+(?=$|[.,])/;
 
-/** Without the blanks between groups of three digits before the decimal separator. */
+/** The text without the blanks between groups of three digits before the decimal separator. */
 function ungrouped(text: string): string {
   return text.replace(GROUPS, (digits) => digits.replace(/\s/g, ''));
 }
 
-/** Nothing where the text is no number, or has more than one separator. Blanks between groups of thousands are read over. */
+/**
+ * Null if the text is not a number, or has more than one separator. Blanks between groups of three digits are
+ * ignored.
+ */
 function parsePlain(text: string): number | null {
   const trimmed = ungrouped(text.trim());
   if (!/^[+-]?(\d+([.,]\d*)?|[.,]\d+)$/.test(trimmed)) {
@@ -19,7 +23,7 @@ function parsePlain(text: string): number | null {
   return Number.isFinite(value) ? value : null;
 }
 
-/** Two numbers of which the second is not zero, with a slash between them, or one number. */
+/** Two numbers separated by a slash, of which the second is not zero, or one number. */
 function parseTerm(text: string): number | null {
   const parts = text.split('/').map(parsePlain);
   const [first = null, second] = parts;
@@ -30,16 +34,18 @@ function parseTerm(text: string): number | null {
   return isFraction ? first / second : null;
 }
 
-/** A sign before a term is that of its sum; the second number of a fraction has none. */
+/** A sign before a term belongs to the sum; the second number of a fraction has no sign. */
 const TERMS = /([+-]?)([^+-]+)/g;
 
-/** A whole number, a minus and a fraction: to some people 3-1/8 is 3.125, to others 2.875. */
+/** A whole number, a minus and a fraction, which is ambiguous: 3-1/8 may mean 3.125 or 2.875. */
 export function isMixed(text: string): boolean {
   return /^\s*[+-]?\d+\s*-\s*\d+\s*\/\s*\d+\s*$/.test(text);
 }
 
-/** A number, a fraction (1/2), or a sum or difference of those (10+2.5). Nothing for any other text: an operator without
- * two numbers, two operators in a row, brackets, products, and where a minus has two meanings (isMixed). */
+/**
+ * A number, a fraction (1/2), or a sum or difference of them (10+2.5). Null for any other text: an operator
+ * without two numbers, two operators in a row, brackets, products, and an ambiguous minus (isMixed).
+ */
 export function parseNumber(text: string): number | null {
   const trimmed = text.trim();
   if (isMixed(trimmed)) {
@@ -60,19 +66,19 @@ export function parseNumber(text: string): number | null {
   return sum !== null && Number.isFinite(sum) ? sum : null;
 }
 
-/** A fraction or a sum: its value is shown beside it. */
+/** True for a fraction or a sum, whose value is shown beside it. */
 export function isCalculated(text: string): boolean {
   return parseNumber(text) !== null && parsePlain(text) === null;
 }
 
-/** Digits alone: a number of a tool or a pocket, from `least` to `most`. */
+/** Only digits: a number of a tool or a pocket, from `least` to `most`. */
 export function parseWhole(text: string, least: number, most: number): number | null {
   const digits = ungrouped(text.trim());
   const value = /^\d{1,9}$/.test(digits) ? Number(digits) : NaN;
   return value >= least && value <= most ? value : null;
 }
 
-/** Without the minus of a zero; a dash where there is no number. */
+/** Without the minus of a zero; a dash if there is no number. */
 export function formatNumber(value: number | null | undefined, decimals: number, separator = '.'): string {
   if (value === null || value === undefined || !Number.isFinite(value)) {
     return '-';

@@ -33,7 +33,7 @@ const pads = new PadJogger({
     if (target !== undefined) {
       jogger.release(target.isJoint, target.index);
     } else {
-      jogger.releaseAll(); // the target no longer exists: end all jogs
+      jogger.releaseAll(); // the target no longer exists, so all jogs end
     }
   },
   isOpen: () => canJog(view()) === null && document.hasFocus() && !document.hidden && document.querySelector('[role="dialog"]') === null,
@@ -42,7 +42,7 @@ const pads = new PadJogger({
 
 whenJogsEnd(() => pads.noteEnd());
 
-/** While the view is shown; gives what ends it. */
+/** For the time while the view is shown; returns the function that ends it. */
 export function watchPad(): () => void {
   const look = (): void => {
     const all = (navigator.getGamepads?.() ?? []) as readonly (Pad | null)[];

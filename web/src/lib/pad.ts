@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs by a gamepad. An axis moves only while its enable button is pressed and a stick is moved out of its centre after the button was
-// pressed. The jog ends when either is released; to start again, both must be operated again.
+// Jogs with a gamepad. An axis moves only while its enable button is pressed and a stick is moved out of its
+// centre after the button was pressed. The jog ends when either is released; to start again, both must be
+// operated again.
 
 /** State of a pad as the browser reports it. */
 export interface Pad {
@@ -9,22 +10,22 @@ export interface Pad {
   mapping: string;
   axes: readonly number[];
   buttons: readonly { pressed: boolean }[];
-  /** Of its last change. [ms] */
+  /** Time of its last change. [ms] */
   timestamp: number;
 }
 
 export interface PadIo {
-  /** With the part of the jog speed, -1 to 1. */
+  /** With the fraction of the jog speed, -1 to 1. */
   press(letter: string, share: number): void;
   change(letter: string, share: number): void;
   release(letter: string): void;
-  /** Nothing stands against a jog. */
+  /** True if a jog is possible. */
   isOpen(): boolean;
-  /** The jogs have ended though nobody let go. */
+  /** The jogs have ended although the operator did not release them. */
   ended(why: 'lost' | 'still'): void;
 }
 
-/** Which way a stick moves an axis. */
+/** The direction in which a stick moves an axis. */
 export interface StickAxis {
   letter: string;
   stick: number;
@@ -33,14 +34,14 @@ export interface StickAxis {
 
 /** Both shoulder buttons of the standard layout. */
 const HOLD_BUTTONS = [4, 5];
-/** Of a stick: a worn one does not come back to its middle. */
+/** Dead zone of a stick, because a worn stick does not return to its centre. */
 export const DEAD_ZONE = 0.2;
-/** A held stick is never quite still: a pad that tells nothing for so long has lost its radio. */
+/** A held stick is never completely still, so a pad without changes for this time has lost its connection. */
 export const STILL_MS = 4000;
-/** Changes of the speed are told by so many parts. */
+/** Number of steps in which changes of the speed are sent. */
 const STEPS = 20;
 
-/** Mill: left stick X and Y, right stick Z and the fourth axis. Lathe: as its picture has Z and X. */
+/** Mill: left stick X and Y, right stick Z and the fourth axis. Lathe: Z and X as in its picture. */
 export function sticksOf(kind: string, axes: string): StickAxis[] {
   const all: StickAxis[] =
     kind === 'lathe' || kind === 'back_lathe'
@@ -53,7 +54,7 @@ export function sticksOf(kind: string, axes: string): StickAxis[] {
   return all.filter((one) => axes.includes(one.letter));
 }
 
-/** Nothing within the dead zone; from its edge on evenly up to 1. */
+/** 0 within the dead zone; from its edge linear up to 1. */
 export function shareOf(value: number): number {
   const size = Math.abs(value);
   if (!(size > DEAD_ZONE)) {
@@ -73,7 +74,7 @@ export class PadJogger {
 
   constructor(private readonly io: PadIo) {}
 
-  /** To be called every few milliseconds with what navigator.getGamepads() says. */
+  /** Call it every few milliseconds with the result of navigator.getGamepads(). */
   look(pads: readonly (Pad | null)[], sticks: readonly StickAxis[], now: number): void {
     const usable = pads.filter((one): one is Pad => one !== null && one.connected && one.mapping === 'standard');
     const pad = usable.find((one) => one.index === this.pad) ?? (this.pad === null ? usable.find(isHolding) : undefined);
@@ -112,13 +113,13 @@ export class PadJogger {
     }
   }
 
-  /** The page has lost the attention: the button is pressed anew before anything moves. */
+  /** Called when the page has lost the focus: the button must be pressed again before anything moves. */
   drop(): void {
     this.releaseAll();
     this.isArmed = false;
   }
 
-  /** A jog has ended by what the machine said. */
+  /** Called when the machine has ended a jog. */
   noteEnd(): void {
     this.held.clear();
     this.isArmed = false;
@@ -132,7 +133,7 @@ export class PadJogger {
     if (now !== 0 && Math.sign(share) !== Math.sign(now)) {
       this.held.delete(letter);
       this.io.release(letter);
-      return; // the other way begins with the next look
+      return; // the other direction begins with the next call
     }
     this.held.set(letter, share);
     if (now === 0) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How its operator likes the screen: kept in this browser, and at the machine where the INI file names files for it.
+// Preferences of the operator: stored in this browser, and at the machine if the INI file names files for
+// them.
 
 import type { ColorBy } from './path/shades';
 import type { KeptSimulation } from './simulation/kept';
@@ -9,7 +10,7 @@ export type Language = 'en' | 'de' | 'es';
 export type Unit = 'machine' | 'mm' | 'inch';
 
 export interface Preferences {
-  /** What the path is coloured by. */
+  /** The value that colours the path. */
   colorBy: ColorBy;
   theme: Theme;
   language: Language;
@@ -17,7 +18,7 @@ export interface Preferences {
   positions: 'feedback' | 'commanded';
   mdiHistory: string[];
   increment: number | null;
-  /** Of the maximum jog speed; null: as the INI file sets it. */
+  /** Fraction of the maximum jog speed; null: as in the INI file. */
   jogShare: number | null;
   simulation: KeptSimulation;
 }
@@ -46,21 +47,23 @@ function read(): Preferences {
     const kept = JSON.parse(localStorage.getItem(KEY) ?? '{}') as Partial<Preferences>;
     return { ...PRESETS, ...kept };
   } catch {
-    return { ...PRESETS }; // no storage, or not ours: the presets
+    return { ...PRESETS }; // no storage, or no access: the presets
   }
 }
 
 export const prefs = $state<Preferences>(read());
 
-/** What the machine keeps for all its screens. */
+/** Data that the machine stores for all its screens. */
 const atMachine = { preferences: false, mdiHistory: false };
 
 async function put(path: string, value: object): Promise<void> {
   await fetch(path, { method: 'PUT', body: JSON.stringify(value) });
 }
 
-/** Takes over what the machine keeps: [DISPLAY]PREFERENCE_FILE_PATH and MDI_HISTORY_FILE. A file that is another screen's stays
- * as it is, and this browser keeps its own. */
+/**
+ * Reads the data stored at the machine: [DISPLAY]PREFERENCE_FILE_PATH and MDI_HISTORY_FILE. A file of another
+ * screen is not changed, and this browser then keeps its own data.
+ */
 export async function readKept(hasPreferences: boolean, hasHistory: boolean): Promise<void> {
   if (hasPreferences) {
     const answer = await fetch('/api/preferences');

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Calls of nc_files/probing, from what an operator has filled in.
+// Calls of nc_files/probing, with the operator's input.
 
 export type ProbeKind = 'edge' | 'corner' | 'bore' | 'boss' | 'tool';
 export type ProbeField = 'travel' | 'tip' | 'fast' | 'slow' | 'step' | 'width' | 'clearance' | 'depth' | 'setter';
 
-/** What is filled in for each; lengths before feeds. */
+/** Input fields of each cycle; lengths before feeds. */
 export const PROBE_FIELDS: Record<ProbeKind, ProbeField[]> = {
   edge: ['travel', 'tip', 'fast', 'slow'],
   corner: ['step', 'travel', 'tip', 'fast', 'slow'],
@@ -20,7 +20,7 @@ export function presetOf(field: ProbeField, isInches: boolean): number {
   return (isInches ? PRESETS_INCH : PRESETS_MM)[field];
 }
 
-/** Where the faces are, seen from the probe: signs of X, Y and Z. */
+/** Position of the faces seen from the probe: signs of X, Y and Z. */
 export interface Side {
   x: number;
   y: number;
@@ -31,12 +31,12 @@ export interface Probe {
   kind: ProbeKind;
   side: Side;
   isInside: boolean;
-  /** 1 to 9: that coordinate system gets its zero there; 0: none does. */
+  /** 1 to 9: coordinate system whose zero is set; 0: none. */
   system: number;
   values: Record<ProbeField, number>;
 }
 
-/** The line of MDI. */
+/** The MDI line. */
 export function callOf(probe: Probe): string {
   const { side, values, system } = probe;
   const given = (...numbers: number[]): string => numbers.map((one) => `[${one}]`).join(' ');
@@ -55,7 +55,7 @@ export function callOf(probe: Probe): string {
   }
 }
 
-/** Axes along which the cycle sets a zero. The length of a tool is measured without one (G49). */
+/** Axes along which the cycle sets a zero. A tool length is measured without an active length (G49). */
 export function axesOf(kind: ProbeKind, side: Side): string[] {
   if (kind === 'tool') {
     return [];
@@ -63,7 +63,7 @@ export function axesOf(kind: ProbeKind, side: Side): string[] {
   return kind === 'edge' ? (['x', 'y', 'z'] as const).filter((axis) => side[axis] !== 0).map((axis) => axis.toUpperCase()) : ['X', 'Y'];
 }
 
-/** Buttons around the probe: each says where the face or corner lies. Y up, as in the view from above. */
+/** Buttons around the probe, at the position of the face or corner. Y up, as in the view from above. */
 export const EDGE_SIDES: (Side & { at: string; sign: string })[] = [
   { x: 0, y: 1, z: 0, at: '1 / 2', sign: 'Y+' },
   { x: -1, y: 0, z: 0, at: '2 / 1', sign: 'X-' },

@@ -8,20 +8,20 @@ import { openName, program } from './program.svelte';
 
 interface Progress {
   isReading: boolean;
-  /** Nothing while it is not known. */
+  /** Null while it is not known. */
   sum: TimeSum | null;
   left_s: number | null;
   failed: string;
-  /** Rises with each reading that has ended. */
+  /** Increases with each completed read. */
   reads: number;
 }
 
 export const progress = $state<Progress>({ isReading: false, sum: null, left_s: null, failed: '', reads: 0 });
 
-/** Highest speed of each move, along the points of the path. Changes with `progress.reads`. */
+/** Maximum speed of each move, along the points of the path. Changes with `progress.reads`. */
 export const speeds = new Ranges();
 
-/** An override that is being changed is waited for. */
+/** Wait for an override that is being changed. */
 const SETTLE_MS = 700;
 let worker: Worker | null = null;
 let order = 0;
@@ -70,7 +70,7 @@ function read(file: string, feed: number, rapid: number, maxVelocity: number): v
   worker.postMessage(asked);
 }
 
-/** To be called in an effect: reckons what is open, anew when the overrides have changed. */
+/** Call it in an effect: calculates the open program, again when the overrides have changed. */
 export function followTimes(): void {
   const name = machine.isConnected ? openName() : null;
   void program.reads;
@@ -85,12 +85,12 @@ export function followTimes(): void {
   }
   progress.isReading = true;
   if (isPathUnderWay) {
-    return; // the path comes first: both at once take the processor from each other
+    return; // the path comes first, because both share the processor
   }
   settling = setTimeout(() => read(name, feed, rapid, most), SETTLE_MS);
 }
 
-/** To be called with each status. */
+/** Call it with each status. */
 export function followProgress(): void {
   const status = machine.status;
   const isRunning = status !== null && status.task.mode === 'AUTO' && status.task.interp_state !== 'IDLE';

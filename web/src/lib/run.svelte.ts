@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The program that runs, or has ended: its time, and how many parts this page has counted.
+// The running program, or the last one: its time, and the number of parts counted by this page.
 import { machine } from './machine.svelte';
 import { RunWatch, type RunEnd } from './run_end';
 
@@ -19,21 +19,24 @@ function counted(program: string): number {
     const kept = JSON.parse(sessionStorage.getItem(KEY) ?? '{}') as Partial<Counted>;
     return kept.session === machine.session && kept.program === program ? (kept.parts ?? 0) : 0;
   } catch {
-    return 0; // a browser that keeps nothing
+    return 0; // a browser without storage
   }
 }
 
-/** One more finished run of this program, since the server of the screen has started. A reload of the page keeps the count. */
+/**
+ * Counts a finished run of this program since the start of the screen's server. A reload of the page keeps
+ * the count.
+ */
 function count(program: string): void {
   run.parts = counted(program) + 1;
   try {
     sessionStorage.setItem(KEY, JSON.stringify({ session: machine.session, program, parts: run.parts } satisfies Counted));
   } catch {
-    // counted until the page is loaded again
+    // counted until the page is reloaded
   }
 }
 
-/** To be called with each status. */
+/** Call it with each status. */
 export function followRun(): void {
   const hasEnded = watch.take(machine.status);
   if (hasEnded && watch.end?.kind === 'finished') {
@@ -43,7 +46,7 @@ export function followRun(): void {
   run.end = watch.end;
 }
 
-/** Of a start that this page has sent. */
+/** Called with the outcome of a start that this page has sent. */
 export function followOutcome(progress: string): void {
   if (watch.outcome(progress) && watch.end !== null) {
     count(watch.end.program);

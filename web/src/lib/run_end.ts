@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How long a program runs, and how it has ended: from the status, and from the outcome of its start where this page started it.
+// Duration of a program, and how it has ended: from the status, and from the outcome of its start if this
+// page started it.
 import type { MachineStatus } from './status';
 
 export type EndKind = 'finished' | 'stopped' | 'failed' | 'ended';
 
 export interface RunEnd {
-  /** `ended`: by its last line, or by a stop of another screen. */
+  /** `ended`: by its last line, or by a stop from another screen. */
   kind: EndKind;
   program: string;
-  /** Of the last move, 0 if none was executed. */
+  /** Line of the last move, 0 if none was executed. */
   line: number;
-  /** Nothing where the page did not see the start. */
+  /** Null if the page did not observe the start. */
   seconds: number | null;
 }
 
 type Known = Pick<MachineStatus, 'time_ns' | 'codes'> & { task: Pick<MachineStatus['task'], 'mode' | 'interp_state' | 'program' | 'motion_line' | 'programs_ended' | 'error_code'> };
 
-/** Where the status has M2 or M30 of the last block. */
+/** Index of M2 or M30 of the last block in the status. */
 const M_STOP = 1;
 const FAILED = 5;
 
@@ -24,13 +25,13 @@ export class RunWatch {
   private last: { isRunning: boolean; ended: number } | null = null;
   private start_ns: number | null = null;
   private line = 0;
-  /** An outcome that came before the status with the end. */
+  /** An outcome that arrived before the status with the end. */
   private early: string | null = null;
   /** The end of the last run, until the next one. */
   end: RunEnd | null = null;
   elapsed_s: number | null = null;
 
-  /** To be called with each status; null: there is none. True with the end of a program. */
+  /** Call it with each status; null: there is none. Returns true at the end of a program. */
   take(status: Known | null): boolean {
     if (status === null) {
       this.last = null;
@@ -68,7 +69,7 @@ export class RunWatch {
     return hasEnded && !isRunning;
   }
 
-  /** The outcome of the start, by the page that has sent it. True: with it the program is finished. */
+  /** The outcome of the start, from the page that has sent it. Returns true if it completes the program. */
   outcome(progress: string): boolean {
     if (this.last?.isRunning === true) {
       this.early = progress;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lengths as the operator wants to see them.
+// Lengths in the operator's unit.
 import { decimalSeparator } from './i18n/index.svelte';
 import { machine } from './machine.svelte';
 import { formatNumber } from './numbers';
@@ -12,7 +12,7 @@ export function shownUnit(): 'mm' | 'inch' {
   return prefs.unit === 'machine' ? (machine.facts?.linear_unit ?? 'mm') : prefs.unit;
 }
 
-/** What a length in machine units is multiplied by to be shown. */
+/** Factor from machine units to displayed lengths. */
 export function shownFactor(): number {
   const unit = machine.facts?.linear_unit ?? 'mm';
   const shown = shownUnit();
@@ -37,7 +37,7 @@ export function showAngle(value: number | null | undefined): string {
 
 const S_PER_MIN = 60;
 
-/** Machine units per second, as people say feeds: per minute. */
+/** Machine units per second as feeds per minute. */
 export function showFeed(perSecond: number | null | undefined): string {
   const factor = shownFactor() * S_PER_MIN;
   return formatNumber(perSecond === null || perSecond === undefined ? perSecond : perSecond * factor, shownUnit() === 'mm' ? 0 : 1, decimalSeparator());
@@ -47,12 +47,12 @@ export function isLathe(): boolean {
   return machine.facts?.kind === 'lathe' || machine.facts?.kind === 'back_lathe';
 }
 
-/** What places along an axis are multiplied by: X of a lathe counts as diameter under G7, and so it is shown. */
+/** Factor of positions along an axis: X of a lathe is shown as a diameter under G7. */
 export function axisFactor(letter: string): number {
   return letter === 'X' && isLathe() && machine.status !== null && isDiameter(machine.status.codes) ? 2 : 1;
 }
 
-/** With what is to be known of its figures: of a lathe, whether X is a diameter or a radius. */
+/** Axis label with a note about its values: for a lathe, whether X is a diameter or a radius. */
 export function axisName(letter: string): string {
   return letter === 'X' && isLathe() ? (axisFactor(letter) === 2 ? 'X⌀' : 'X r') : letter;
 }

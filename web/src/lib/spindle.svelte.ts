@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The speed that a spindle is started with, wherever its buttons are.
+// The start speed of a spindle for all its buttons.
 import * as actions from './actions';
 import { canEnergise, type Gate } from './gates';
 import { machine, view } from './machine.svelte';
@@ -7,7 +7,7 @@ import { parseNumber } from './numbers';
 
 const typed = $state<Record<number, string>>({});
 
-/** What was typed, else what the INI file proposes, else nothing. */
+/** The typed speed, else that of the INI file, else nothing. */
 export function speedText(index: number): string {
   const proposed = machine.facts?.spindles[index]?.default_speed ?? 0;
   return typed[index] ?? (proposed > 0 ? String(proposed) : '');
@@ -22,7 +22,10 @@ export function canStartSpindle(index: number): Gate {
   return canEnergise(view()) ?? (speed !== null && speed > 0 ? null : { key: 'gate.speed' });
 }
 
-/** By [DISPLAY]SPINDLE_INCREMENT, within what the INI file allows; a spindle that runs follows at once. */
+/**
+ * Changes the speed by [DISPLAY]SPINDLE_INCREMENT, within the limits of the INI file; a running spindle
+ * follows at once.
+ */
 export function changeSpeed(index: number, sign: number): void {
   const spindle = machine.status?.spindles[index];
   const now = spindle?.is_on === true ? Math.abs(spindle.speed_cmd_rpm) : (parseNumber(speedText(index)) ?? 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The status as the server sends it: messages.md, MachineStatus. Lengths in machine units, angles in degrees.
+// The status as sent by the server: messages.md, MachineStatus. Lengths in machine units, angles in degrees.
 
 export type State = 'ESTOP' | 'ESTOP_RESET' | 'OFF' | 'ON';
 export type Mode = 'MANUAL' | 'AUTO' | 'MDI';
@@ -166,13 +166,13 @@ export interface MachineFacts {
   tabs: Tab[];
   min_linear_velocity: number;
   min_angular_velocity: number;
-  /** Overrides with 1.0 for 100 %, speeds in rev/min; max_speed and default_speed 0: none set. */
+  /** Overrides with 1.0 for 100 %, speeds in rev/min; max_speed and default_speed 0: not set. */
   spindles: { min_override: number; max_override: number; min_speed: number; max_speed: number; default_speed: number; increment: number }[];
   ini: string;
   instance: string;
   axes: string;
   kind: 'mill' | 'lathe' | 'back_lathe' | 'foam';
-  /** [DISPLAY]GEOMETRY: where a pose is drawn. */
+  /** [DISPLAY]GEOMETRY: position of a pose in the picture. */
   geometry: string;
   /** Heights at which the planes of a foam cutter are drawn. */
   foam_z: number;
@@ -189,7 +189,7 @@ export interface MachineFacts {
   increments: { text: string; value: number; angular: boolean }[];
   mdi_commands: string[];
   program_extensions: string[];
-  /** Of files that a program of [FILTER] makes programs from, which lie in the folder. */
+  /** Extensions of files that a program of [FILTER] converts; its programs are in the folder. */
   filter_extensions: string[];
   filtered_folder: string;
   max_feed_override: number;
@@ -201,7 +201,7 @@ function isTree(value: unknown): value is Tree {
   return typeof value === 'object' && value !== null;
 }
 
-/** Puts what has changed into `whole`, nested as in the whole; of arrays the elements by index. */
+/** Applies changes to `whole`; they are nested as in the whole, and arrays contain elements by index. */
 export function mergeDelta(whole: Tree | unknown[], delta: Tree): void {
   const target = whole as Tree;
   for (const [key, value] of Object.entries(delta)) {
@@ -225,7 +225,7 @@ export function isAngularAxis(index: number): boolean {
   return index >= 3 && index <= 5;
 }
 
-/** Where the controlled point stands in the program's coordinates, in machine units. */
+/** Position of the controlled point in program coordinates, in machine units. */
 export function workPosition(position: readonly number[], offsets: Offsets): number[] {
   const at = position.map((value, i) => value - (offsets.g5x[i] ?? 0) - (offsets.tool[i] ?? 0));
   const angle = (-offsets.rotation_xy_deg * Math.PI) / 180;
@@ -237,7 +237,7 @@ export function workPosition(position: readonly number[], offsets: Offsets): num
   return at.map((value, i) => value - (offsets.g92[i] ?? 0));
 }
 
-/** Places in the lists of codes that are no modes: the line number, and codes of the last block alone. */
+/** Indices in the lists of codes that are not modes: the line number, and codes of only the last block. */
 const NO_MODE_G = [0, 2];
 const NO_MODE_M = [0, 1, 3, 9];
 
@@ -259,7 +259,7 @@ export function isDiameter(codes: Codes): boolean {
   return codes.g.includes(70);
 }
 
-/** G20: programs and MDI count in inches. */
+/** G20: programs and MDI are in inches. */
 export function isProgramInches(codes: Codes): boolean {
   return codes.g.includes(200);
 }
@@ -270,7 +270,7 @@ export function programmed(codes: Codes): { feed: number; speed: number; toleran
   return { feed, speed, tolerance };
 }
 
-/** Of the F word. */
+/** Unit of the F word. */
 export function feedUnit(codes: Codes): string {
   const length = isProgramInches(codes) ? 'inch' : 'mm';
   return codes.g.includes(930) ? '1/min' : codes.g.includes(950) ? `${length}/rev` : `${length}/min`;

@@ -3,7 +3,7 @@ import { prefs } from './prefs.svelte';
 
 export const theme = $state({ isDark: true });
 
-/** Follows the operator's choice, or that of the system. Called in an effect. */
+/** Follows the operator's selection, or that of the system. Call it in an effect. */
 export function applyTheme(): () => void {
   const dark = matchMedia('(prefers-color-scheme: dark)');
   const look = (): void => {

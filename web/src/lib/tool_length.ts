@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whose tool length is active, and whether it is that of the tool in the spindle.
+// The tool whose length is active, and whether it is the tool in the spindle.
 import { AXIS_LETTERS, type MachineStatus } from './status';
 import type { Tool } from './tools.svelte';
 
-/** G49, a tool of the table, or values of no tool in it: of G43.1, G43.2, or of a table that has changed since. */
+/** G49, a tool of the table, or values that no tool has: from G43.1, G43.2, or from a table that has changed since. */
 export type LengthOwner = { kind: 'none' } | { kind: 'tool'; toolno: number } | { kind: 'other' };
 
 export interface ToolLength {
@@ -17,14 +17,14 @@ export interface ToolLength {
 type Known = Pick<MachineStatus, 'codes' | 'offsets' | 'tool'>;
 
 const G49 = 490;
-/** Of conversions between inches and millimetres. */
+/** Rounding of conversions between inches and millimetres. */
 const TOLERANCE = 1e-6;
 
 function isSame(a: readonly number[], b: readonly number[]): boolean {
   return [...AXIS_LETTERS].every((_, i) => Math.abs((a[i] ?? 0) - (b[i] ?? 0)) < TOLERANCE);
 }
 
-/** `tools` as in the status: entry 0 is the spindle, of most machines a copy of the loaded tool's. */
+/** `tools` as in the status: entry 0 is the spindle, on most machines a copy of the loaded tool's entry. */
 export function toolLength(status: Known, tools: readonly Tool[]): ToolLength {
   const active = status.offsets.tool;
   const inSpindle = Math.max(status.tool.in_spindle, 0);
@@ -37,7 +37,10 @@ export function toolLength(status: Known, tools: readonly Tool[]): ToolLength {
   return { owner, inSpindle, wrongAxes };
 }
 
-/** After a load: the length of the tool before is still active, and nothing that the change has done (a remap of M6) has set another. */
+/**
+ * After a load: true if the previous tool length is still active and the change (a remap of M6) has not set
+ * another one.
+ */
 export function mustApplyLength(before: Known, after: Known, tools: readonly Tool[]): boolean {
   const hadLength = !before.codes.g.includes(G49);
   const isUntouched = !after.codes.g.includes(G49) && isSame(before.offsets.tool, after.offsets.tool);

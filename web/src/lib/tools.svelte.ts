@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The tool table, read again when the status says that there is another one.
+// The tool table, read again when the status reports another version.
 import { machine, tellLocally } from './machine.svelte';
 
 export interface Tool {
@@ -17,7 +17,7 @@ export const tools = $state<{ version: number; list: Tool[] }>({ version: -1, li
 
 let isReading = false;
 
-/** To be called in an effect: reads what is new. */
+/** Call it in an effect: reads a new table. */
 export function followTools(): void {
   const wanted = machine.isMachineUp ? (machine.status?.tool.table_version ?? -1) : -1;
   if (wanted === -1) {
@@ -43,11 +43,11 @@ async function read(): Promise<void> {
   tools.version = told.version;
 }
 
-/** What T has prepared, 0: an empty spindle; null when it is not known yet. */
+/** The tool prepared by T, 0: an empty spindle; null while it is not known. */
 export function preparedTool(): number | null {
   const index = machine.status?.tool.prepared_index ?? -1;
   if (index === 0) {
-    return 0; // the entry of the spindle itself: nothing is put in
+    return 0; // the entry of the spindle itself: nothing is loaded
   }
   return index < 0 ? null : (tools.list[index]?.toolno ?? null);
 }

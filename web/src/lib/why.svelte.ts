@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Why something cannot be done now: shown where the operator looks, for as long as it takes to read.
+// The reason why something is not possible now, shown at the operator's point of view for the time needed to
+// read it.
 import type { Gate } from './gates';
 
 const SHOWN_MS = 8000;
@@ -23,7 +24,7 @@ export function forgetWhy(): void {
   why.gate = null;
 }
 
-/** Does it where the gate is open, else says why not. */
+/** Acts if the gate is open, else shows the reason. */
 export function through(gate: Gate, what: string, act: () => unknown): void {
   if (gate === null) {
     forgetWhy();

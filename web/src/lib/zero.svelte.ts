@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Sets work zeros and restores the former ones. One command at a time: a second touch waits for the first.
+// Sets work zeros and restores the former ones. One command at a time; a second touch waits for the first.
 import { inProgramUnits, mdi } from './actions';
 import { canTouchOff, type Gate } from './gates';
 import { machine, untilStatus, view } from './machine.svelte';
 import { isDiameter, type Offsets } from './status';
 import { canRestore, goLine, isIncremental, restoreLine, zeroLine, zeroSet, type ZeroSet } from './zero';
 
-/** How long Undo is offered after the last zero. */
+/** Time for which Undo is offered after the last zero. */
 const OFFERED_MS = 60_000;
 /** The status with the new offsets comes after the outcome of the command. */
 const STATUS_MS = 1000;
@@ -32,7 +32,7 @@ export function lastZero(): ZeroSet | null {
   return last !== undefined && offsets !== undefined && canRestore(last, offsets) ? last : null;
 }
 
-/** The position that becomes zero, or that a move starts from, is the one that the operator sees. */
+/** True if the position that becomes zero, or from which a move starts, is the one shown to the operator. */
 export function canZero(): Gate {
   const old = machine.silentSeconds ?? machine.staleSeconds;
   if (old !== null) {
@@ -42,7 +42,7 @@ export function canZero(): Gate {
   return canTouchOff(view()) ?? (zeros.isBusy ? { key: 'gate.busy' } : isMoving ? { key: 'gate.moving' } : null);
 }
 
-/** A move to zero also needs homed joints where programs do not, and G90. */
+/** A move to zero also needs homed joints if programs do not need them, and G90. */
 export function canGoToZero(): Gate {
   const status = machine.status;
   const gate = canZero();
@@ -64,7 +64,7 @@ async function alone(act: () => Promise<void>): Promise<void> {
   }
 }
 
-/** Whether it was set. */
+/** Returns whether the zero was set. */
 export async function setZero(letters: readonly string[]): Promise<boolean> {
   let isDone = false;
   await alone(async () => {
@@ -84,7 +84,7 @@ export async function setZero(letters: readonly string[]): Promise<boolean> {
   return isDone;
 }
 
-/** Zeros that can be restored one after the other. */
+/** Number of zeros that can be restored. */
 const UNDOS = 20;
 
 export function undoZero(): Promise<void> {
@@ -105,7 +105,7 @@ export function undoZero(): Promise<void> {
   });
 }
 
-/** Moves: only after the operator has confirmed it. */
+/** Moves the machine; only after the operator has confirmed it. */
 export function goToZero(letters: readonly string[]): Promise<void> {
   return alone(async () => {
     await mdi(goLine(letters));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Work zeros: the lines that set and restore them, and when a zero may still be restored.
+// Work zeros: the lines that set and restore them, and the conditions for restoring.
 import { AXIS_LETTERS, axisIndex, type Codes, type Offsets } from './status';
 
 /** A zero that was set, and what it replaced. */
@@ -12,7 +12,7 @@ export interface ZeroSet {
   after: number[];
 }
 
-/** Offsets that differ by less come from the conversion between inches and millimetres. */
+/** Offsets that differ by less are caused by the conversion between inches and millimetres. */
 const TOLERANCE = 1e-6;
 /** Digits of a restored offset: more than the machine resolves, and no exponent. */
 const DIGITS = 9;
@@ -26,30 +26,30 @@ export function zeroLine(letters: readonly string[]): string {
   return `G10 L20 P0 ${letters.map((letter) => `${letter}0`).join(' ')}`;
 }
 
-/** What the zero has changed; null where it changed nothing. */
+/** The change made by the zero; null if nothing changed. */
 export function zeroSet(letters: readonly string[], before: Offsets, after: Offsets): ZeroSet | null {
   const isOther = before.g5x_index !== after.g5x_index || isSame(before.g5x, after.g5x);
   return isOther ? null : { system: before.g5x_index, letters: [...letters], before: [...before.g5x], after: [...after.g5x] };
 }
 
-/** Nothing has changed the active coordinate system since. */
+/** True if the active coordinate system has not changed since. */
 export function canRestore(zero: ZeroSet, offsets: Offsets): boolean {
   return offsets.g5x_index === zero.system && isSame(offsets.g5x, zero.after);
 }
 
-/** The former offsets of the axes in `letters`, all of the machine: in a rotated system a zero of X changes Y, too. */
+/** Restores the offsets of all axes of the machine, because in a rotated system a zero of X also changes Y. */
 export function restoreLine(zero: ZeroSet, letters: readonly string[], inUnits: (value: number, letter: string) => number): string {
   return `G10 L2 P${zero.system} ${letters.map((letter) => `${letter}${inUnits(zero.before[axisIndex(letter)] ?? 0, letter).toFixed(DIGITS)}`).join(' ')}`;
 }
 
 const G91 = 910;
 
-/** G91: a line of MDI moves by a distance, not to a position. */
+/** G91: an MDI line moves by a distance, not to a position. */
 export function isIncremental(codes: Codes): boolean {
   return codes.g.includes(G91);
 }
 
-/** A rapid to zero, of these axes at once. */
+/** A rapid to zero of these axes, simultaneously. */
 export function goLine(letters: readonly string[]): string {
   return `G0 ${letters.map((letter) => `${letter}0`).join(' ')}`;
 }

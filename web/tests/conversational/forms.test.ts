@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The forms of conversational programming: their checks, their programs, and what is stored in a program (J1).
+// Tests the forms of conversational programming: their checks, their programs, and the data stored in a
+// program (J1).
 import { describe, expect, it } from 'vitest';
 import { chained } from '../../src/lib/conversational/chains';
 import { packed, readDxf, unpacked } from '../../src/lib/conversational/dxf';
@@ -118,7 +119,7 @@ describe('programs', () => {
   it('of a lathe use diameters, feed per revolution and the safe position', () => {
     const lines = programOf(jobWith(['lathe_thread', { tool: 3, thread_side: 'internal', major: 30 }], ['part_off', { tool: 2, speed_mode: 'surface' }]), FACTS).split('\n');
     expect(lines).toEqual(expect.arrayContaining(['G21 G18 G7 G90 G95', 'G97 S400 M3', 'G96 D2000 S120 M3', 'G0 X80', 'G0 Z50']));
-    // Out of the bore along Z before X moves.
+    // Leaves the bore along Z before X moves.
     const at = lines.findIndex((line) => line.startsWith('G76'));
     expect(lines.slice(at + 1, at + 3)).toEqual(['G7', 'G0 Z4.5']);
     expect(lines.slice(-3, -1)).toEqual(['G97 G94 G8', 'M30']);

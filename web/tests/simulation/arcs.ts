@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Points along an arc or helix, as near to it as the server's: for programs that do not come from the server.
+// Points along an arc or helix with the accuracy of the server's, for programs that are not from the server.
 import type { Triple } from '../../src/lib/simulation/stock';
 
-/** Chords are at most so far from their arc. [mm] */
+/** Maximum distance of chords from their arc. [mm] */
 export const DEVIATION_MM = 0.005;
 const LEAST_PER_TURN = 12;
 
@@ -10,7 +10,7 @@ export interface Arc {
   from: Triple;
   to: Triple;
   centre: Triple;
-  /** Axis that the arc turns about: 0 X, 1 Y, 2 Z. */
+  /** Axis of the arc: 0 X, 1 Y, 2 Z. */
   about: 0 | 1 | 2;
   /** Signed, counter-clockwise seen from the positive end of the axis. */
   angle_rad: number;

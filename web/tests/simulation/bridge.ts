@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The simulation for tests/simulation/simulation_campaign.py: a job as a line of JSON in, its result as a line out. Moves come as the canonical
-// calls of rs274.
+// The simulation for tests/simulation/simulation_campaign.py: a job as a line of JSON in, its result as a
+// line out. Moves are the canonical calls of rs274.
 import { createInterface } from 'node:readline';
 import type { Fixture, Stock, Triple } from '../../src/lib/simulation/stock';
 import type { ToolShape } from '../../src/lib/simulation/shapes';
@@ -18,7 +18,7 @@ interface Job {
 const CALL = /^\s*\d+\s+N(\S+)\s+(\w+)\((.*)\)/;
 const ABOUT: Record<string, 0 | 1 | 2> = { XY: 2, YZ: 0, XZ: 1 };
 
-/** Signed angle of ARC_FEED, whose rotation counts begun turns. */
+/** Signed angle of ARC_FEED, whose rotation counts started revolutions. */
 function angleOf(from: [number, number], to: [number, number], rotation: number): number {
   const sign = Math.sign(rotation);
   let turn = sign * (Math.atan2(to[1], to[0]) - Math.atan2(from[1], from[0]));

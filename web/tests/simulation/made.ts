@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Moves for tests of the simulation, as the server sends them.
+// Moves for tests of the simulation, in the server's format.
 import { Moves } from '../../src/lib/simulation/moves';
 import { guessShape, type ToolShape } from '../../src/lib/simulation/shapes';
 import { Simulation, type CheckpointLimits, type Setup } from '../../src/lib/simulation/simulation';
@@ -22,7 +22,7 @@ export function movesOf(points: readonly Point[], first_tool = 1): Moves {
       moves.take({ kind: 'ranges', first: Uint32Array.of(i), feed: Float32Array.of(10), tool: Uint32Array.of(tool) });
     }
     const isFirst = i === 0;
-    // Each chunk begins with the last point of the one before.
+    // Each chunk begins with the last point of the previous one.
     const all = isFirst ? [point] : [point, point];
     moves.take({
       kind: 'moves',

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What others use of this folder.
+// Exports of this folder.
 export * from './dxf';
 export * from './job';
 export * from './registry';

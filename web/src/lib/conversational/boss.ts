@@ -10,11 +10,14 @@ export interface Boss {
   x: number;
   y: number;
   corner: number;
-  /** Half the size of the material around it. */
+  /** Half the size of the stock. */
   stock: Point;
 }
 
-/** Paths of the tool's centre, the outermost first: at even distances from the boss, and never far outside of the stock. */
+/**
+ * Paths of the tool's centre, the outermost first: at equal distances from the boss, and never far outside of
+ * the stock.
+ */
 export function bossRings(boss: Boss, diameter: number, stepOver: number, inset: number): Ring[] {
   const radius = diameter / 2;
   const first = radius + inset;

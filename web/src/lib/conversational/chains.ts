@@ -8,7 +8,7 @@ export type Chained = { chains: Path[] } | { fault: Fault };
 
 const pointValues = (p: Point): Record<string, number> => ({ x: Math.round(p.x * 1e4) / 1e4, y: Math.round(p.y * 1e4) / 1e4 });
 
-/** Contours of entities whose ends are no further apart than `tolerance`. */
+/** Contours of entities whose ends are at most `tolerance` apart. */
 export function chained(entities: Entity[], tolerance: number): Chained {
   const bad = entities.find((one) => one.bad !== undefined);
   if (bad !== undefined) {
@@ -29,7 +29,7 @@ export function chained(entities: Entity[], tolerance: number): Chained {
   return twice === null ? { chains } : { fault: { key: 'fault.dxf_twice', values: pointValues(twice) } };
 }
 
-/** Without segments shorter than the tolerance. */
+/** The path without segments shorter than the tolerance. */
 function clean(path: Path, tolerance: number): Path {
   let from = path.start;
   const segments = path.segments.filter((one) => {
@@ -46,7 +46,7 @@ function snapped(path: Path): Path {
   return { start: path.start, segments };
 }
 
-/** A point where more than two ends meet; null where there is none. */
+/** A point at which more than two ends meet; null if there is none. */
 function crowded(open: Path[], tolerance: number): Point | null {
   const ends = open.flatMap((one) => [one.start, endOf(one)]);
   return ends.find((p) => ends.filter((q) => distance(p, q) <= tolerance).length > 2) ?? null;
@@ -88,7 +88,7 @@ function attach(chain: Path, one: Path, tolerance: number): Path | null {
   return isNear(chain.start, one.start) ? { start: endOf(one), segments: [...reversed(one).segments, ...chain.segments] } : null;
 }
 
-/** A contour that lies on another one: a point of it. */
+/** A point of a contour that coincides with another contour. */
 function doubled(chains: Path[], tolerance: number): Point | null {
   const seen: Point[][] = [];
   for (const chain of chains) {
@@ -102,7 +102,7 @@ function doubled(chains: Path[], tolerance: number): Point | null {
   return null;
 }
 
-/** Twice the area inside of a closed path, positive where it is drawn anticlockwise. */
+/** Twice the area of a closed path, positive if it is drawn counterclockwise. */
 export function signedArea(path: Path): number {
   const points = samples(path, Math.max(1e-6, pathStep(path)));
   return points.reduce((sum, p, i) => {

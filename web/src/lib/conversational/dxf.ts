@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Reads the lines, arcs, circles and polylines of a DXF file, and keeps them as short text that a program can contain.
+// Reads the lines, arcs, circles and polylines of a DXF file, and converts them to a short text that a
+// program can contain.
 import type { Point, Segment } from './path2';
 import type { Unit } from './types';
 
-/** A run of segments of one layer, as drawn. `bad`: the name of an entity that cannot be cut. */
+/** A sequence of connected segments of one layer, as drawn. `bad`: the name of an entity that cannot be cut. */
 export interface Entity {
   layer: string;
   start: Point;
@@ -14,10 +15,10 @@ export interface Entity {
 export const MOST_ENTITIES = 2000;
 type Pair = [number, string];
 
-/** What has no cut in it: notes, dimensions, points. */
+/** Entities that cannot be cut: notes, dimensions, points. */
 const NOTES = new Set(['TEXT', 'MTEXT', 'DIMENSION', 'POINT', 'HATCH', 'LEADER', 'MULTILEADER', 'ATTDEF', 'ATTRIB', 'VIEWPORT', 'IMAGE', 'TOLERANCE', 'SEQEND', 'VERTEX', 'WIPEOUT']);
 
-/** Null where the text is no DXF file. */
+/** Null if the text is not a DXF file. */
 function pairsOf(text: string): Pair[] | null {
   const lines = text.split(/\r\n|\r|\n/);
   const pairs: Pair[] = [];
@@ -39,7 +40,7 @@ const valueOf = (pairs: Pair[], code: number, preset = 0): number => {
   return text === undefined ? preset : Number(text);
 };
 
-/** Units of the drawing in those of the program. */
+/** Factor from units of the drawing to those of the program. */
 function scaleOf(pairs: Pair[], unit: Unit): number {
   const at = pairs.findIndex((one) => one[0] === 9 && one[1] === '$INSUNITS');
   const code = at >= 0 ? Number(pairs[at + 1]?.[1] ?? 0) : 0;
@@ -72,7 +73,7 @@ interface Vertex extends Point {
   bulge: number;
 }
 
-/** A segment of a polyline: a bulge is the tangent of a quarter of the angle of its arc. */
+/** A segment of a polyline. The bulge is the tangent of a quarter of the arc's angle. */
 function bulged(from: Point, to: Point, bulge: number): Segment {
   if (Math.abs(bulge) < 1e-9) {
     return { kind: 'line', to: { x: to.x, y: to.y } };
@@ -146,7 +147,7 @@ function entityOf(groups: Group[], i: number, scale: number): Entity | null {
   }
 }
 
-/** Null where the text is no DXF file. Entities without a length are left out. */
+/** Null if the text is not a DXF file. Entities without length are omitted. */
 export function readDxf(text: string, unit: Unit): Entity[] | null {
   const pairs = pairsOf(text);
   if (pairs === null || !pairs.some((one) => one[0] === 2 && one[1] === 'ENTITIES')) {
@@ -164,7 +165,10 @@ function isNumeric(one: Entity): boolean {
 
 const short = (value: number): string => String(Math.round(value * 1e6) / 1e6);
 
-/** One entity in each line: its layer, a tab, its start, then the ends of its segments; an arc has its direction and centre too. */
+/**
+ * One entity per line: its layer, a tab, its start, then the ends of its segments; for an arc also direction
+ * and centre.
+ */
 export function packed(entities: Entity[]): string {
   return entities
     .map((one) => {
@@ -177,7 +181,7 @@ export function packed(entities: Entity[]): string {
     .join('\n');
 }
 
-/** The reverse; null where the text is something else. */
+/** The inverse; null if the text has another form. */
 export function unpacked(text: string): Entity[] | null {
   const out: Entity[] = [];
   for (const line of text.split('\n').filter((one) => one !== '')) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Fields that many operations have in common, with their defaults and ranges.
+// Fields that many operations share, with their defaults and ranges.
 import type { ConvKey } from './i18n/en';
 import { num, word, type ChoiceField, type Context, type Faults, type Field, type Limit, type NumberField, type NumberKind, type Unit, type Values } from './types';
 
-/** A round value of each unit. */
+/** A round value for each unit. */
 export const nice = (unit: Unit, mm: number, inch: number): number => (unit === 'mm' ? mm : inch);
 
-/** No length of a part or position is larger. */
+/** Maximum of the lengths of a part or position. */
 export const longest = (unit: Unit): number => nice(unit, 10000, 400);
 export const shortest = (unit: Unit): number => nice(unit, 0.001, 0.00005);
 
@@ -97,7 +97,7 @@ export function diameterOf(values: Values, context: Context): number | null {
   return known > 0 ? known : null;
 }
 
-/** The surface, how deep, and the height of rapid moves near it. */
+/** The surface, the depth, and the height of rapid moves near the part. */
 export function depthFields(mm = 5, inch = 0.2): Field[] {
   return [
     position('top', 0, { reason: 'why.top', limits: (_, context) => [{ high: context.safe, isOpen: true, key: 'fault.top_safe', values: { safe: context.safe } }] }),
@@ -116,7 +116,7 @@ export function stepDown(): NumberField {
     limits: (values) => [{ high: num(values, 'depth'), key: 'fault.step_depth', values: { high: num(values, 'depth') } }, { low: num(values, 'depth') / 1000, key: 'fault.too_many_steps' }],
   });
 }
-/** Above this share of the diameter, material is left in the corners between two paths. */
+/** Above this fraction of the diameter, material remains in the corners between two paths. */
 export const MOST_STEP = 0.7;
 export function stepOver(most = MOST_STEP): NumberField {
   return size('step_over', (values, context) => 0.4 * num(values, 'diameter') || nice(context.unit, 2, 0.1), 0.1, {
@@ -135,16 +135,16 @@ export function finishing(): NumberField {
   return margin('allowance', (_, context) => nice(context.unit, 0.2, 0.01), { reason: 'why.allowance', limits: (values) => [{ high: num(values, 'diameter') / 4, key: 'fault.allowance', values: { high: num(values, 'diameter') / 4 } }] });
 }
 export const directionField = (): ChoiceField => choice('direction', ['climb', 'conventional'], 'climb', { reason: 'why.direction' });
-/** How the cutter enters the material. */
+/** The entry of the cutter into the material. */
 export function entryFields(): Field[] {
   return [
     choice('entry', ['ramp', 'plunge'], 'ramp', { reason: 'why.entry' }),
     angle('ramp_angle', 3, 0.5, 30, { reason: 'why.ramp_angle', isShown: (values) => word(values, 'entry') !== 'plunge' }),
   ];
 }
-/** A program of more lines is slow to read and to show, and most often the result of a typing error. */
+/** A program of more lines is slow to read and to show, and usually caused by a typing error. */
 export const MOST_LINES = 100_000;
-/** The fault of an operation of about that many lines, at the field that can reduce them. */
+/** The fault of an operation of about this many lines, at the field that can reduce them. */
 export function lengthFault(lines: number, field: string): Faults {
   return lines > MOST_LINES ? { [field]: { key: 'fault.long_program', values: { high: MOST_LINES } } } : {};
 }

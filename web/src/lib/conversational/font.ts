@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A font of single strokes for engraving. Capitals are 6 units high, small letters 4; a stroke is a list of points, and
-// @x,y,rx,ry,from,to is an arc of an ellipse around x,y between two angles in degrees. A semicolon begins a new stroke.
+// A font of single strokes for engraving. Capitals are 6 units high, small letters 4. A stroke is a list of
+// points;
+// @x,y,rx,ry,from,to is an arc of an ellipse around x,y between two angles in degrees. A semicolon begins a
+// new stroke.
 import type { Point } from './path2';
 
 const CAPITALS = 6;
@@ -33,7 +35,7 @@ const GLYPHS: Record<string, string> = {
   '×': '0,1.5 3,4.5;0,4.5 3,1.5', 'µ': '0,4 0,-2;0,1.5 @1.5,1.5,1.5,1.5,180,360;3,4 3,0', '€': '@3,4,2,2,30,180 1,2 @3,2,2,2,180,330;0,3.6 3.4,3.6;0,2.4 3.4,2.4', 'ß': '0,0 0,4.6 @1.3,4.6,1.3,1.4,180,-90 @1.3,1.6,1.7,1.6,90,-110',
   '¿': '@1.5,1.5,1.5,1.5,-10,-240 1.5,3.6 1.5,4.2;1.5,5.7 1.5,6', '¡': '0,0 0,4;0,5.7 0,6', 'ẞ': '0,0 0,4.6 @1.5,4.6,1.5,1.4,180,45 2,3.4 @1.9,1.7,2,1.7,90,-120',
 };
-/** Letters with a mark above: the letter, and the mark around its middle. */
+/** Letters with an accent: the letter, and the accent relative to its middle. */
 const MARKS: Record<string, string> = { diaeresis: '-0.8,0.3 -0.8,0.6;0.8,0.3 0.8,0.6', acute: '-0.3,0 0.6,1', tilde: '-1.2,0.3 -0.6,0.8 0.6,0.3 1.2,0.8', dotless: '' };
 const MARKED: Record<string, [string, string]> = {
   ä: ['a', 'diaeresis'], ö: ['o', 'diaeresis'], ü: ['u', 'diaeresis'], Ä: ['A', 'diaeresis'], Ö: ['O', 'diaeresis'], Ü: ['U', 'diaeresis'], ñ: ['n', 'tilde'], Ñ: ['N', 'tilde'],
@@ -75,12 +77,12 @@ function glyph(letter: string): Stroke[] | null {
   return [...strokes, ...placed];
 }
 
-/** The first character without a picture; null: the text can be engraved. */
+/** The first character that the font does not have; null if the text can be engraved. */
 export function unknownLetter(text: string): string | null {
   return [...text.normalize('NFC')].find((one) => one !== ' ' && glyph(one) === null) ?? null;
 }
 
-/** Strokes of a text whose capitals have this height; the left end of its base line is the origin. */
+/** Strokes of a text with this height of capitals; the origin is the left end of its base line. */
 export function strokesOfText(text: string, height: number): { strokes: Stroke[]; width: number } {
   const scale = height / CAPITALS;
   const out: Stroke[] = [];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A program of several operations: what they have in common, its checks, and its G-code.
+// A program of several operations: common settings, checks, and G-code.
 import { en, type ConvKey } from './i18n/en';
 import { nice, shortest } from './fields';
 import { operationOf } from './registry';
@@ -19,11 +19,11 @@ export interface Job {
   name: string;
   unit: Unit;
   system: string;
-  /** Z above everything on the table, in the coordinate system [unit]. */
+  /** Z above all objects on the table, in the coordinate system [unit]. */
   safe: number;
-  /** Lathe: diameter outside of which nothing is in the path of the tool; `safe` is a Z in front of the part. */
+  /** Lathe: diameter outside of which the tool path is free; `safe` is a Z in front of the part. */
   safeX?: number;
-  /** Before a tool change and at the end: to Z 0 of the machine, or to the safe height. */
+  /** Retract before a tool change and at the end: to Z 0 of the machine, or to the safe height. */
   retract: 'machine' | 'safe';
   end: 'M30' | 'M2';
   steps: Step[];
@@ -34,7 +34,7 @@ export function newJob(unit: Unit, machine: 'mill' | 'lathe' = 'mill'): Job {
   return machine === 'mill' ? { ...common, safe: nice(unit, 25, 1), retract: 'machine' } : { ...common, safe: nice(unit, 50, 2), safeX: nice(unit, 80, 3), retract: 'safe' };
 }
 
-/** What the machine contributes to the checks. */
+/** Data of the machine for the checks. */
 export interface MachineFacts {
   tools: TableTool[] | null;
   maxFeed: number | null;
@@ -46,11 +46,11 @@ export function contextOf(job: Job, facts: MachineFacts): Context {
   return { unit: job.unit, safe: job.safe, safeX: job.safeX ?? 0, ...facts };
 }
 
-/** Names that a file can have on every computer. */
+/** File names that are valid on every computer. */
 const NAME = /^[\p{L}\p{N}][\p{L}\p{N} _.+-]*$/u;
 const MOST_NAME = 60;
 
-/** Faults of the fields of the program itself. */
+/** Faults of the program's own fields. */
 export function jobFaults(job: Job): Faults {
   const faults: Faults = {};
   if (!NAME.test(job.name) || job.name.length > MOST_NAME) {
@@ -82,7 +82,7 @@ function safeFault(job: Job): Fault | null {
   return tops.length > 0 && job.safe < highest + shortest(job.unit) ? { key: 'fault.safe_below', values: { top: highest } } : null;
 }
 
-/** Faults of each operation, in their order. */
+/** Faults of each operation, in order. */
 export function stepFaults(job: Job, facts: MachineFacts): Faults[] {
   const context = contextOf(job, facts);
   return job.steps.map((one, i): Faults => {
@@ -96,7 +96,7 @@ export function stepFaults(job: Job, facts: MachineFacts): Faults[] {
   });
 }
 
-/** A tool has one diameter in the whole program. */
+/** Checks that a tool has the same diameter in the whole program. */
 function otherDiameter(job: Job, at: number): Fault | null {
   const tool = num(job.steps[at]?.values ?? {}, 'tool');
   const diameter = num(job.steps[at]?.values ?? {}, 'diameter');
@@ -130,7 +130,7 @@ function shownValue(field: Field, values: Values, unit: Unit): string | null {
   return typeof value === 'number' ? `${plain(value, 5)} ${unitOf(field, unit)}`.trim() : String(value);
 }
 
-/** The parameters as comments, in English: a program may be read at any machine. */
+/** The parameters as comments, in English, because the program may be read at any machine. */
 function parameters(writer: Writer, operation: Operation, values: Values): void {
   for (const field of operation.fields) {
     const shown = isShown(field, values) ? shownValue(field, values, writer.unit) : null;
@@ -157,7 +157,7 @@ function header(writer: Writer, job: Job): void {
   writer.blank();
   writer.line(`${job.unit === 'mm' ? 'G21' : 'G20'} ${job.machine === 'mill' ? 'G17 G90 G94' : 'G18 G7 G90 G95'}`);
   writer.line('G40 G49 G80');
-  // Corners stay within this of the path.
+  // Corners remain within this distance of the path.
   writer.line(`G64 P${job.unit === 'mm' ? '0.01' : '0.0004'}`);
   writer.line(job.system);
 }
@@ -177,7 +177,7 @@ function retract(writer: Writer, job: Job): void {
 function toolChange(writer: Writer, job: Job, values: Values, isFirst: boolean): void {
   const tool = num(values, 'tool');
   writer.line('M5 M9');
-  // The length of the tool before is cancelled at first: the height is that of the machine.
+  // First cancels the length of the previous tool, because the height is in machine coordinates.
   if (!isFirst || (job.retract === 'machine' && job.machine === 'mill')) {
     retract(writer, job);
   }
@@ -186,7 +186,7 @@ function toolChange(writer: Writer, job: Job, values: Values, isFirst: boolean):
   retract(writer, job);
 }
 
-/** Rapid moves between operations are at the height of the retract, then straight down. */
+/** Moves between operations with rapids at the retract height, then straight down. */
 function runStep(writer: Writer, job: Job, step: Step, context: Context, before: Step | undefined): void {
   const operation = operationOf(step.type);
   if (operation === null) {

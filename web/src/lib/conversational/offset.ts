@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Path of a tool's centre beside a contour: each segment is shifted to its left, outer corners get arcs, inner corners intersections.
-// The result is checked against all contours, so that no path comes nearer to one than the tool's radius.
+// Path of a tool's centre beside a contour: each segment is shifted to its left, outer corners get arcs,
+// inner corners intersections. The result is checked with all contours, so that the path is never nearer to a
+// contour than the tool's radius.
 import { along, distance, isClosed, lengthOf, refitted, samples, type Arc, type Path, type Point, type Segment } from './path2';
 import type { Fault } from './types';
 
@@ -9,7 +10,7 @@ export type Offset = { path: Path } | { fault: Fault };
 interface Piece {
   from: Point;
   segment: Segment;
-  /** Of the contour, at its end. */
+  /** Corner of the contour, at the end of the segment. */
   corner: Point;
 }
 
@@ -27,7 +28,7 @@ function heading(from: Point, one: Segment, isEnd: boolean): Point {
   return { x: (-sign * (at.y - one.centre.y)) / radius, y: (sign * (at.x - one.centre.x)) / radius };
 }
 
-/** Shifted to the left; null: an arc inwards has no radius left. */
+/** The segment shifted to the left; null if an inner arc has no radius left. */
 function shifted(from: Point, one: Segment, by: number): Piece | null {
   const left = (isEnd: boolean, p: Point): Point => {
     const t = heading(from, one, isEnd);
@@ -39,7 +40,10 @@ function shifted(from: Point, one: Segment, by: number): Piece | null {
   return { from: left(false, from), segment: { ...one, to: left(true, one.to) }, corner: one.to };
 }
 
-/** The path beside `contour` at `by` to its left. Gaps up to `tolerance` between shifted segments are closed without a corner. */
+/**
+ * The path at distance `by` to the left of `contour`. Gaps of at most `tolerance` between shifted segments
+ * are closed without a corner.
+ */
 export function offsetLeft(contour: Path, by: number, tolerance = 1e-7): Offset {
   const isLoop = isClosed(contour);
   const pieces: Piece[] = [];
@@ -96,7 +100,7 @@ function connected(pieces: Piece[], isLoop: boolean, tolerance: number): Offset 
   return { path: refitted({ start: (out[0] as Piece).from, segments }) };
 }
 
-/** After its ends were moved to the corners, the segment runs backwards. */
+/** True if the segment runs backwards after its ends were moved to the corners. */
 function isTurned(before: Piece, after: { from: Point; segment: Segment }): boolean {
   if (after.segment.kind === 'line') {
     const t = heading(before.from, before.segment, false);
@@ -105,7 +109,7 @@ function isTurned(before: Piece, after: { from: Point; segment: Segment }): bool
   return distance(after.from, after.segment.to) > 1e-9 && lengthOf(after.from, after.segment) > lengthOf(before.from, before.segment) + 1e-6;
 }
 
-/** Where two shifted segments, or what continues them, meet: nearest to the corner. */
+/** Intersection of two shifted segments, or of their extensions, nearest to the corner. */
 function meet(a: { from: Point; segment: Segment }, b: { from: Point; segment: Segment }, corner: Point): Point | null {
   const found =
     a.segment.kind === 'line'
@@ -172,7 +176,7 @@ function distanceTo(p: Point, from: Point, one: Segment): number {
   return part <= total ? Math.min(ends, distance(p, on)) : ends;
 }
 
-/** A point of the path that is nearer than `least` to a contour; null where there is none. */
+/** A point of the path that is nearer than `least` to a contour; null if there is none. */
 export function nearer(path: Path, contours: Path[], least: number, step: number): Point | null {
   for (const p of samples(path, step)) {
     for (const contour of contours) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Paths in a plane from straight lines and arcs, and where a form puts them.
+// Paths in a plane from straight lines and arcs, and their position in a form.
 
 export interface Point {
   x: number;
@@ -21,7 +21,7 @@ export interface Path {
   segments: Segment[];
 }
 
-/** Shorter than any move of a program. */
+/** Below the length of any move of a program. */
 export const TINY = 1e-6;
 
 export const distance = (a: Point, b: Point): number => Math.hypot(a.x - b.x, a.y - b.y);
@@ -47,7 +47,7 @@ export function placePath(frame: Frame, path: Path): Path {
   };
 }
 
-/** The angle an arc covers, always positive; a whole circle where its ends coincide [rad]. */
+/** The angle of an arc, always positive; a full circle if its ends coincide [rad]. */
 export function sweepOf(from: Point, arc: Arc): number {
   if (distance(from, arc.to) < TINY) {
     return 2 * Math.PI;
@@ -72,7 +72,7 @@ export function pathLength(path: Path): number {
   return sum;
 }
 
-/** The point at a share of a segment. */
+/** The point at a fraction of a segment. */
 export function along(from: Point, one: Segment, share: number): Point {
   if (one.kind === 'line') {
     return { x: from.x + (one.to.x - from.x) * share, y: from.y + (one.to.y - from.y) * share };
@@ -91,7 +91,7 @@ export function reversed(path: Path): Path {
   return { start: endOf(path), segments: segments.reverse() };
 }
 
-/** Arcs whose ends have been moved a little get the centre that is as far from both. */
+/** If the ends of an arc were moved slightly, its centre is moved to equal distances from both. */
 export function refitted(path: Path): Path {
   let from = path.start;
   const segments = path.segments.map((one): Segment => {
@@ -109,7 +109,7 @@ export function refitted(path: Path): Path {
   return { start: path.start, segments };
 }
 
-/** The part up to `length`, and the rest. */
+/** Splits at `length`: the first part, and the rest. */
 export function splitPath(path: Path, length: number): [Path, Path] {
   const first: Path = { start: path.start, segments: [] };
   let [from, left] = [path.start, length];
@@ -129,7 +129,7 @@ export function splitPath(path: Path, length: number): [Path, Path] {
   return [first, { start: from, segments: [] }];
 }
 
-/** Points along the path, no further apart than `step`. */
+/** Points along the path at a spacing of at most `step`. */
 export function samples(path: Path, step: number): Point[] {
   const points = [path.start];
   let from = path.start;
@@ -148,14 +148,17 @@ export interface Ring {
   x: number;
   y: number;
   radius: number;
-  /** No point is further from the axes than this. */
+  /** Maximum distance of points from the axes. */
   clip?: Point;
 }
 
-/** A rectangle with round corners around the origin. It starts in the middle of its lower side (`bottom`) or of its left side. */
+/**
+ * A rectangle with round corners around the origin. It starts in the middle of its lower side (`bottom`) or
+ * of its left side.
+ */
 export function ringPath(ring: Ring, isCw: boolean, from: 'bottom' | 'left'): Path {
   const quarter = quarterOf(ring);
-  // Anticlockwise from the middle of the right side: each quarter mirrors the one before.
+  // Counterclockwise from the middle of the right side; each quarter mirrors the previous one.
   const mirror = (signX: number, signY: number): Point[] => quarter.points.map((p) => ({ x: signX * p.x, y: signY * p.y }));
   const quarters = [mirror(1, 1), mirror(-1, 1).reverse(), mirror(-1, -1), mirror(1, -1).reverse()];
   const centres = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([sx, sy]) => ({ x: (sx ?? 0) * quarter.centre.x, y: (sy ?? 0) * quarter.centre.y }));

@@ -25,7 +25,7 @@ export function patternFields(): Field[] {
   ];
 }
 
-/** One hole in each line: X and Y with a blank or semicolon between them. Null for a line that is not that. */
+/** One hole per line: X and Y separated by a blank or semicolon. Null for other lines. */
 export function readPoints(text: string): (Point | null)[] {
   return text
     .split(/\n|\|/)
@@ -64,7 +64,7 @@ export function holesOf(values: Values): Point[] {
       return list(num(values, 'holes'), (i) => place(at, { x: i * num(values, 'spacing'), y: 0 }));
     case 'grid': {
       const [columns, rows] = [num(values, 'columns'), num(values, 'rows')];
-      // Back and forth, so that the way between two holes is short.
+      // Back and forth, so that the distance between two holes is short.
       return list(columns * rows, (i) => {
         const row = Math.floor(i / columns);
         const column = row % 2 === 0 ? i % columns : columns - 1 - (i % columns);
@@ -76,10 +76,10 @@ export function holesOf(values: Values): Point[] {
   }
 }
 
-/** The field that has to change where two holes overlap. */
+/** The field to be changed if two holes overlap. */
 const SPACING: Record<string, string> = { circle: 'holes', line: 'spacing', grid: 'spacing_x', list: 'points' };
 
-/** Holes of this diameter may touch, and not overlap. */
+/** True if holes of this diameter overlap; touching is permitted. */
 export function overlapFault(values: Values, diameter: number): Faults {
   const points = holesOf(values);
   const order = points.map((_, i) => i).sort((a, b) => (points[a] as Point).x - (points[b] as Point).x);

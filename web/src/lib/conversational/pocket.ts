@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Clears pockets whose shape is a rectangle with round corners (a circle and a slot are such rectangles): from the middle outwards in
-// rings, level by level, with a finishing ring at each level.
+// Clears pockets with the shape of a rectangle with round corners (which includes circle and slot): in rings
+// from the middle outwards, level by level, with a finishing ring at each level.
 import { depthFields, directionField, entryFields, feedDown, finishing, lengthFault, levelCount, slopeOf, stepDown, stepOver, toolFields } from './fields';
 import { distance, place, placePath, ringPath, type Frame, type Path, type Point } from './path2';
 import { num, word, type Context, type Faults, type Field, type Values } from './types';
@@ -16,7 +16,7 @@ export interface Pocket {
 
 type Entry = { kind: 'plunge' } | { kind: 'helix'; radius: number } | { kind: 'line' };
 
-/** The tool's centre stays in a rectangle of this half size while it clears. */
+/** Half size of the rectangle for the tool's centre while it clears. */
 interface Region {
   x: number;
   y: number;
@@ -25,12 +25,12 @@ interface Region {
 
 const regionOf = (pocket: Pocket, inset: number): Region => ({ x: pocket.x - inset, y: pocket.y - inset, corner: Math.max(0, pocket.corner - inset) });
 
-/** With its longer side along X. */
+/** The pocket with its longer side along X. */
 function lying(pocket: Pocket): Pocket {
   return pocket.x >= pocket.y ? pocket : { ...pocket, x: pocket.y, y: pocket.x, frame: { ...pocket.frame, turn: pocket.frame.turn + Math.PI / 2 } };
 }
 
-/** How the tool gets into solid material; null: not without a plunge. */
+/** The possible entries of the tool into solid material; null: only with a plunge. */
 function entryOf(pocket: Pocket, diameter: number, allowance: number, isPlunging: boolean): Entry | null {
   if (isPlunging) {
     return { kind: 'plunge' };
@@ -43,12 +43,12 @@ function entryOf(pocket: Pocket, diameter: number, allowance: number, isPlunging
   return radius >= 0.1 * diameter ? { kind: 'helix', radius } : x - y >= 0.25 * diameter ? { kind: 'line' } : null;
 }
 
-/** The fields of each pocket behind those of its place and shape. */
+/** The fields of each pocket after those of its position and shape. */
 export function pocketFields(): Field[] {
   return [...depthFields(), ...toolFields(), feedDown(), stepDown(), stepOver(), finishing(), directionField(), ...entryFields()];
 }
 
-/** Faults of several fields together: the tool with its allowance, its way into the material, and the length of the program. */
+/** Faults of several fields together: the tool with its allowance, its entry, and the length of the program. */
 export function checkPocket(values: Values, pocket: Pocket): Faults {
   const width = 2 * Math.min(pocket.x, pocket.y);
   const diameter = num(values, 'diameter');
@@ -101,7 +101,7 @@ function entryPoint({ pocket, entry, region }: Cut): Point {
   return place(pocket.frame, at);
 }
 
-/** Down to `z`; it ends with the middle of the pocket cleared and the tool there. */
+/** Moves down to `z` and clears the middle of the pocket, where the tool ends. */
 function enter(writer: Writer, { pocket, entry, region, values, isCw }: Cut, z: number): void {
   const [feed, down] = [num(values, 'feed'), num(values, 'feed_z')];
   const half = region.x - region.y;

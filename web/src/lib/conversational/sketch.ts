@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Drawings of forms, to scale, from the values: outlines seen from above, and dimensions with the field that each belongs to.
+// Drawings of forms to scale, from the values: outlines seen from above, and dimensions with their fields.
 import { bossRings } from './boss';
 import { contoursOf, cutsOf } from './operations/contour';
 import { engravedStrokes } from './operations/engrave';
@@ -204,7 +204,7 @@ const SKETCHES: Record<string, (d: Draft, v: Values, context: Context) => void> 
   ...LATHE_SKETCHES,
 };
 
-/** Numbers that were not typed correctly, and sizes of zero or less, are drawn with their defaults. */
+/** Invalid numbers, and sizes of zero or less, are drawn with their defaults. */
 function drawable(operation: Operation, values: Values, context: Context): Values {
   const usable = Object.fromEntries(
     operation.fields

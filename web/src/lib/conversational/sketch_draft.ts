@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a drawing consists of, and how one is put together.
+// Elements of a drawing, and functions to create one.
 import type { Point } from './path2';
 import { num, type Values } from './types';
 
@@ -8,8 +8,10 @@ export interface Outline {
   points: Point[];
   isClosed: boolean;
 }
-/** Between two points, drawn `level` steps to the left of the direction from a to b (negative: to the right). A dimension of no
- * length marks a point. */
+/**
+ * A dimension between two points, drawn `level` steps to the left of the direction from a to b (negative: to
+ * the right). A dimension of zero length marks a point.
+ */
 export interface Dimension {
   field: string;
   a: Point;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Keeps the values of the forms in the program itself: comments behind its end, with a checksum of the G-code. A program that was
-// changed by hand is recognised.
+// Stores the values of the forms in the program: as comments after its end, with a checksum of the G-code. So
+// a program that was changed by hand is detected.
 import type { Job, Step } from './job';
 import type { Unit } from './types';
 
@@ -9,7 +9,7 @@ const DATA = ';@ ';
 /** Characters of a line; interpreters read at least 255. */
 const WIDTH = 100;
 
-/** 53 bits of the text, as hexadecimal digits: it finds changes, and is no protection. */
+/** 53 bits of the text, as hexadecimal digits. It detects changes, but is no protection. */
 export function checksum(text: string): string {
   let [a, b] = [0xdeadbeef, 0x41c6ce57];
   for (let i = 0; i < text.length; i += 1) {
@@ -22,7 +22,7 @@ export function checksum(text: string): string {
   return (4294967296 * (2097151 & b) + (a >>> 0)).toString(16).padStart(14, '0');
 }
 
-/** Line ends and blank ends of lines do not count: editors change them. */
+/** Line ends and trailing blanks are ignored, because editors change them. */
 const normal = (text: string): string => text.replace(/\r\n?/g, '\n').replace(/[ \t]+$/gm, '').trimEnd();
 
 const ascii = (text: string): string => text.replace(/[\u0080-\uffff]/g, (one) => `\\u${one.charCodeAt(0).toString(16).padStart(4, '0')}`);
@@ -38,7 +38,10 @@ export function withForm(program: string, job: Job): string {
 
 export type Opened = { kind: 'none' } | { kind: 'broken' } | { kind: 'newer' } | { kind: 'edited'; job: Job } | { kind: 'same'; job: Job };
 
-/** `none`: not a program of these forms. `broken`: its forms cannot be read. `edited`: the G-code is not that of the forms. */
+/**
+ * `none`: not a program of these forms. `broken`: its forms cannot be read. `edited`: the G-code is not that
+ * of the forms.
+ */
 export function openForm(text: string): Opened {
   const lines = text.replace(/\r\n?/g, '\n').split('\n');
   const at = lines.findIndex((one) => one.startsWith(MARK));

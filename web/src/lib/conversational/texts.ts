@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A job as an operator types it: only what was typed is kept, so that defaults follow the values that they depend on.
+// A job as typed by the operator. Only typed values are stored, so that defaults follow the values on which
+// they depend.
 import { parseNumber } from '../numbers';
 import type { Job, MachineFacts, Step } from './job';
 import { contextOf } from './job';
@@ -9,7 +10,7 @@ import { filled } from './validate';
 import { plain } from './writer';
 
 export interface StepTexts {
-  /** Of this run of the page; it stays when the step moves. */
+  /** Unique within this page; constant when the step moves. */
   id: number;
   type: string;
   texts: Record<string, string>;
@@ -22,7 +23,7 @@ export interface JobTexts extends Omit<Job, 'safe' | 'safeX' | 'steps'> {
 
 const isNumeric = (field: Field): boolean => 'limits' in field;
 
-/** Null: an operation of another version. */
+/** Null for an operation of another version. */
 function typedValues(operation: Operation, texts: Record<string, string>): Values {
   const values: Values = {};
   for (const field of operation.fields) {
@@ -56,7 +57,7 @@ export function textOf(value: number | string | undefined, separator = '.'): str
   return value ?? '';
 }
 
-/** A stored job for the form: each value counts as typed. */
+/** Converts a stored job to the form; each value counts as typed. */
 export function textsOf(job: Job, separator = '.'): JobTexts {
   const steps = job.steps.map((one, id) => ({ id, type: one.type, texts: Object.fromEntries(Object.entries(one.values).map(([key, value]) => [key, textOf(value, separator)])) }));
   const { safeX, ...others } = job;
@@ -90,7 +91,7 @@ const GROUPS: Record<string, string> = {
 export const GROUP_ORDER = ['shape', 'depth', 'tool', 'cut'] as const;
 export type Group = (typeof GROUP_ORDER)[number];
 
-/** What a field belongs to in a form. */
+/** Group of a field in a form. */
 export function groupOf(field: Field): Group {
   return (GROUPS[field.id] ?? 'shape') as Group;
 }

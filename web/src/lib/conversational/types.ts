@@ -4,7 +4,7 @@ import type { ConvKey } from './i18n/en';
 import type { Writer } from './writer';
 
 export type Unit = 'mm' | 'inch';
-/** What a form contains, by field. A number that was not typed correctly is NaN. */
+/** Values of a form, by field. A number that was not typed correctly is NaN. */
 export type Values = Record<string, number | string>;
 
 export interface TableTool {
@@ -13,7 +13,7 @@ export interface TableTool {
   diameter: number;
 }
 
-/** What is known outside of the form of one operation. */
+/** Data from outside the form of one operation. */
 export interface Context {
   unit: Unit;
   /** Z of moves between operations [unit]. */
@@ -27,7 +27,7 @@ export interface Context {
   maxSpeed: number | null;
 }
 
-/** Why a value is rejected: a text and what is put into it. */
+/** Reason why a value is rejected: a text and its parameters. */
 export interface Fault {
   key: ConvKey;
   values?: Record<string, string | number>;
@@ -49,13 +49,13 @@ export type NumberKind = 'length' | 'feed' | 'rev' | 'surface' | 'speed' | 'angl
 
 interface FieldBase {
   id: string;
-  /** Not shown, not checked and not used otherwise. */
+  /** If false, the field is not shown, not checked and not used. */
   isShown?: (values: Values) => boolean;
 }
 export interface NumberField extends FieldBase {
   kind: NumberKind;
   preset: (values: Values, context: Context) => number;
-  /** Why the default is what it is. */
+  /** Reason for the default. */
   reason?: ConvKey;
   limits: (values: Values, context: Context) => Limit[];
 }
@@ -77,9 +77,9 @@ export interface Operation {
   id: string;
   machine: 'mill' | 'lathe';
   fields: Field[];
-  /** Faults that concern several fields, reported at one of them. Called only when each field alone is correct. */
+  /** Faults that concern several fields, reported at one of them. Called only if each field alone is correct. */
   check?: (values: Values, context: Context) => Faults;
-  /** Writes the moves. The values have no fault; the tool is above the safe height, the spindle runs. */
+  /** Writes the moves. The values have no fault, the tool is above the safe height, and the spindle runs. */
   write: (writer: Writer, values: Values, context: Context) => void;
 }
 

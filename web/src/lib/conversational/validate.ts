@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Checks the values of a form: one fault for each field, the first that applies.
+// Checks the values of a form: one fault for each field, the first one found.
 import { type Context, type Fault, type Faults, type Field, type NumberField, type Operation, type Unit, type Values } from './types';
 
-/** Lengths that people type have no more digits than this matters. */
+/** Below the last digit of typed lengths. */
 const TOLERANCE = 1e-9;
 
 export function isShown(field: Field, values: Values): boolean {
@@ -43,7 +43,7 @@ function fieldFault(field: Field, values: Values, context: Context): Fault | nul
   return numberFault(field, values, context);
 }
 
-/** Faults that a value has whatever the others are: fields that depend on it are not rejected because of it. */
+/** Faults of a value that are independent of other fields. Fields that depend on this value are then not rejected. */
 const ALONE = new Set<string>(['fault.number', 'fault.whole', 'fault.above_zero', 'fault.not_negative', 'fault.at_least', 'fault.at_most', 'fault.top_safe', 'fault.part_stock', 'fault.bore_hole', 'fault.z_order', 'fault.hole_gap']);
 
 function eachFault(operation: Operation, values: Values, context: Context): Faults {
@@ -57,7 +57,7 @@ function eachFault(operation: Operation, values: Values, context: Context): Faul
   return faults;
 }
 
-/** The faults of a form by field; empty where the operation can be written. */
+/** The faults of a form by field; empty if the operation can be written. */
 export function faultsOf(operation: Operation, values: Values, context: Context): Faults {
   const first = eachFault(operation, values, context);
   const alone = Object.fromEntries(Object.entries(first).filter(([, fault]) => ALONE.has(fault.key)));
@@ -70,7 +70,7 @@ export function faultsOf(operation: Operation, values: Values, context: Context)
   return faults;
 }
 
-/** The values of a new form; what is in `typed` stays. Defaults may depend on fields before them. */
+/** The values of a new form; those in `typed` are kept. Defaults may depend on earlier fields. */
 export function filled(operation: Operation, typed: Values, context: Context): Values {
   const values: Values = {};
   for (const field of operation.fields) {

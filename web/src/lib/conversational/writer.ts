@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines of G-code: numbers with the digits of the unit, words that do not change left out, comments that end where they should.
+// Lines of G-code: numbers with the digits of the unit, without unchanged words, with comments that end
+// correctly.
 import { along, lengthOf, pathLength, reversed, splitPath, sweepOf, TINY, type Path, type Point, type Segment } from './path2';
 import type { Unit } from './types';
 
@@ -9,7 +10,7 @@ export interface Position {
   z?: number;
 }
 
-/** No point of a program lies closer to its neighbour than the last digit. */
+/** Resolution: neighbouring points of a program are at least one last digit apart. */
 export function digitsOf(unit: Unit): number {
   return unit === 'mm' ? 4 : 5;
 }
@@ -19,7 +20,10 @@ export function plain(value: number, digits: number): string {
   return text === '-0' ? '0' : text;
 }
 
-/** A comment cannot contain brackets, and some first words of it are commands (MSG, LOG). Letters of other alphabets stay. */
+/**
+ * A comment cannot contain brackets, and some first words are commands (MSG, LOG). Letters of other alphabets
+ * are kept.
+ */
 export function commentOf(text: string): string {
   return `(${text.replace(/[(]/g, '[').replace(/[)]/g, ']').replace(/[\r\n]+/g, ' ').replace(/^\s*(msg|debug|print|log\w*|probe\w*|py|abort)\s*,/i, '$1 ')})`;
 }
@@ -38,7 +42,7 @@ const LEAST_RADIUS = 20;
 
 export class Writer {
   readonly lines: string[] = [];
-  /** Where the tool goes, for pictures: without the moves of canned cycles. */
+  /** The tool path for pictures, without the moves of canned cycles. */
   readonly trace: TracePoint[] = [];
   readonly digits: number;
   private readonly at: { x: string; y: string; z: string; f: string } = { x: '', y: '', z: '', f: '' };
@@ -61,7 +65,7 @@ export class Writer {
   blank(): void {
     this.lines.push('');
   }
-  /** The position is not known any more: after a canned cycle or a tool change each word is written. */
+  /** The position is unknown after a canned cycle or a tool change, so all words are written. */
   forget(): void {
     Object.assign(this.at, { x: '', y: '', z: '', f: '' });
   }
@@ -96,16 +100,16 @@ export class Writer {
       this.mark(false);
     }
   }
-  /** An arc around `centre` from the current position; with `turns`, whole circles as well. */
+  /** An arc around `centre` from the current position; with `turns` also full circles. */
   arc(to: Point & { z?: number }, centre: Point, isCw: boolean, rate: number, turns = 1): void {
     const [fromX, fromY] = [Number(this.at.x), Number(this.at.y)];
     const isSame = this.number(to.x) === this.at.x && this.number(to.y) === this.at.y;
     const isCircle = Math.hypot(to.x - this.here.x, to.y - this.here.y) < TINY;
     if (isSame && !isCircle) {
-      return; // shorter than the last digit: written, it would be a whole circle
+      return; // shorter than the last digit; written, it would be a full circle
     }
     if (Math.hypot(to.x - centre.x, to.y - centre.y) < LEAST_RADIUS * 10 ** -this.digits) {
-      this.feed(to, rate); // rounded, its radius would differ at both ends
+      this.feed(to, rate); // after rounding its radius would differ at both ends
       return;
     }
     const words = [isCw ? 'G2' : 'G3', `X${this.number(to.x)}`, `Y${this.number(to.y)}`];
@@ -126,7 +130,7 @@ export class Writer {
       this.trace.push({ ...this.here, isRapid });
     }
   }
-  /** Points between the ends of an arc; whole circles before the last one are left out. */
+  /** Points between the ends of an arc; full circles before the last one are omitted. */
   private markArc(to: Point & { z?: number }, centre: Point, isCw: boolean): void {
     const [from, end] = [{ ...this.here }, to.z ?? this.here.z];
     const arc: Segment = { kind: 'arc', to, centre, isCw };
@@ -136,7 +140,7 @@ export class Writer {
     }
   }
 
-  /** An arc by its radius in the plane of X and Z, where X is a diameter. */
+  /** An arc by its radius in the XZ plane, where X is a diameter. */
   arcByRadius(to: { x: number; z: number }, radius: number, isCw: boolean, rate: number): void {
     const words = this.words(to);
     if (words.length > 0) {
@@ -155,7 +159,7 @@ export class Writer {
       }
     }
   }
-  /** Along the path while Z changes evenly to `z`. */
+  /** Follows the path while Z changes linearly to `z`. */
   ramp(path: Path, z: number, rate: number): void {
     const total = pathLength(path);
     const from = this.here.z;
@@ -171,8 +175,10 @@ export class Writer {
       at = one.to;
     }
   }
-  /** Along a part of the path down to `z` by no more than `slope`; back and forth where the path is too short. It ends at the start of
-   * the path, whose ramp has been cut away. */
+  /**
+   * Follows a part of the path down to `z` with at most `slope`; back and forth if the path is too short. It
+   * ends at the start of the path, whose ramp has been cut away.
+   */
   rampInto(path: Path, z: number, slope: number, rate: number, isLoop: boolean): void {
     const needed = (this.here.z - z) / slope;
     const total = pathLength(path);
@@ -225,7 +231,7 @@ export class Writer {
   }
 }
 
-/** Equal steps from `top` down by `depth`, none deeper than `step`: the Z of each. */
+/** Z of each level: equal steps from `top` down by `depth`, at most `step` each. */
 export function levelsOf(top: number, depth: number, step: number): number[] {
   const count = Math.max(1, Math.ceil(depth / step - 1e-9));
   return Array.from({ length: count }, (_, i) => top - (depth * (i + 1)) / count);

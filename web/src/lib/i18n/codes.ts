@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Meaning of the modal codes in a few words: English, German, Spanish.
+// Short meanings of the modal codes: English, German, Spanish.
 import type { Language } from '../prefs.svelte';
 
 type Words = readonly [en: string, de: string, es: string];
@@ -93,7 +93,7 @@ export const CODES: Readonly<Record<string, Words>> = {
 
 const PLACE: Readonly<Record<Language, 0 | 1 | 2>> = { en: 0, de: 1, es: 2 };
 
-/** Empty for a code that is not known. */
+/** Empty for an unknown code. */
 export function meaningOf(code: string, language: Language): string {
   return CODES[code]?.[PLACE[language]] ?? '';
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// All texts of the screen; the other catalogues have the same keys. The view that shows a text replaces {name}.
+// All texts of the screen; the other catalogues have the same keys. The view that shows a text replaces
+// {name}.
 
 import { simulation } from './simulation';
 

@@ -12,7 +12,7 @@ export function t(key: TextKey, values?: Values): string {
   return fill((CATALOGUES[prefs.language] ?? en)[key], values);
 }
 
-/** What separates decimals. */
+/** The decimal separator. */
 export function decimalSeparator(): string {
   return prefs.language === 'en' ? '.' : ',';
 }

@@ -13,17 +13,17 @@ async function fetchTexts(language: string): Promise<void> {
   }
 }
 
-/** What the machine says, in the operator's language; English until its texts are here. */
+/** A text of the machine in the operator's language; in English until the texts are loaded. */
 export function said(english: string): string {
   const language = prefs.language;
   if (!asked.has(language)) {
     asked.add(language);
-    fetchTexts(language).catch(() => asked.delete(language)); // asked for again with the next message
+    fetchTexts(language).catch(() => asked.delete(language)); // requested again with the next message
   }
   return (read.texts[language] ?? NONE).shown(english);
 }
 
-/** A message's text: what programs say, and this page itself, is in its language already. */
+/** The text of a message. Texts of programs and of this page are already in their language. */
 export function noticeText(kind: string, text: string): string {
   return kind === 'OPERATOR_DISPLAY' ? text : said(text);
 }

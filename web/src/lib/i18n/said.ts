@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the machine says, which is English, in another language: found by the fixed parts of the text that a message was made
-// from. The same as src/language/catalogue does in programs; po/cases.json holds both to the same answers.
+// Translates texts of the machine, which are English: a text is found by the fixed parts of the message. The
+// rules are those of src/language/catalogue; po/cases.json tests both.
 
 interface Pattern {
-  pieces: string[]; // of the key, between the values
-  letters: number; // of all pieces
-  isName: boolean; // one separate word ("joint {}"): the value is a name, too
+  pieces: string[]; // fixed parts of the key, between the values
+  letters: number; // letters of all pieces
+  isName: boolean; // a single word ("joint {}"): the value is a name, too
   translation: string;
 }
 
-const MAX_DEPTH = 5; // of a text within a text
-const MAX_LOOKUPS = 2000; // for one message: one of unknown words with many colons has too many parts
+const MAX_DEPTH = 5; // maximum nesting of texts
+const MAX_LOOKUPS = 2000; // for one message: a message of unknown words with many colons has too many parts
 const countWords = (pieces: string[]): number => pieces.reduce((sum, piece) => sum + (piece.match(/[A-Za-z]{2,}/g) ?? []).length, 0);
-// A value of one word is a name or a number: a signal may be called "error".
+// A value of one word is a name or a number, because a signal may be called "error".
 const hasSeveralWords = (text: string): boolean => text.includes(' ') && (text.match(/[A-Za-z]/g) ?? []).length > 2;
 
-/** What stands between the pieces in `text`; null where they do not stand in it, in this order, from end to end. */
+/** The texts between the pieces in `text`; null if `text` does not consist of the pieces in this order. */
 function valuesBetween(pieces: string[], text: string): string[] | null {
   const [first = '', ...others] = pieces;
   if (!text.startsWith(first)) {
@@ -53,7 +53,7 @@ export class Texts {
     this.patterns.sort((a, b) => b.letters - a.letters);
   }
 
-  /** A message as it is shown; what is not known of it stays English. */
+  /** A message as shown; unknown parts remain English. */
   shown(english: string): string {
     this.left = MAX_LOOKUPS;
     return this.find(english, 0) ?? (english.includes('\n') ? english.split('\n').map((line) => this.line(line)).join('\n') : this.line(english));
@@ -62,7 +62,7 @@ export class Texts {
   private line(text: string): string {
     if (text.startsWith('  ')) {
       const caller = text.startsWith('  called from ') ? this.find(text.slice(2), 0) : null;
-      return caller === null ? text : `  ${caller}`; // lines of a program stay as they are
+      return caller === null ? text : `  ${caller}`; // lines of a program are not changed
     }
     this.left = MAX_LOOKUPS;
     return this.composed(text, 0) ?? text;
@@ -88,7 +88,8 @@ export class Texts {
 
   private isFitting(pattern: Pattern, values: string[], depth: number): boolean {
     if (pattern.pieces[0] === '' && values[0]?.includes(': ')) {
-      return false; // a value at the beginning is no position, type or sentence with a colon: these are separate parts
+      // a position, type or sentence with a colon at the beginning is a separate part, not a value
+      return false;
     }
     return !pattern.isName || values.every((value) => !value.includes(' ') || (depth < MAX_DEPTH && this.composed(value, depth + 1) !== null));
   }
@@ -135,7 +136,7 @@ export class Texts {
     return null;
   }
 
-  /** A name with an ending that was put behind it: the key of the ending begins with a blank or a colon. */
+  /** A name with a suffix; the key of the suffix begins with a blank or a colon. */
   private withEnding(text: string, depth: number): string | null {
     for (let at = 1; at < text.length; ++at) {
       if (text[at] !== ' ' && text[at] !== ':') {

@@ -3,7 +3,7 @@ import type { Catalogue } from './en';
 
 export type Values = Record<string, string | number>;
 
-/** Puts values in the places of a text. A value that is missing stays visible as {name}. */
+/** Replaces the placeholders of a text. A missing value remains visible as {name}. */
 export function fill(text: string, values: Values = {}): string {
   return text.replace(/\{(\w+)\}/g, (place, name: string) => (name in values ? String(values[name]) : place));
 }

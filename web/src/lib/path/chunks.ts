@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The streams of /api/path and /api/times: chunks of moves, bounds, errors, times and the end, as docs/reference/api.md has them.
+// The streams of /api/path and /api/times: chunks of moves, bounds, errors, times and the end, as in
+// docs/reference/api.md.
 import type { TimeSum } from './times';
 import type { TimedMoves } from './times_worker';
 
@@ -9,9 +10,9 @@ export interface Moves {
   /** x, y, z of each point. */
   places: Float32Array;
   lines: Uint32Array;
-  /** 0 rapid, 1 feed, 2 arc, 3 probe: of the move that ends at the point. */
+  /** 0 rapid, 1 feed, 2 arc, 3 probe; type of the move that ends at the point. */
   kinds: Uint8Array;
-  /** How each point is coloured, see shades.ts. */
+  /** Colour of each point, see shades.ts. */
   shades: Uint8Array;
 }
 
@@ -29,7 +30,7 @@ export type Chunk =
 
 const HEAD_BYTES = 8;
 
-/** Its arrays lie in the bytes of the chunk: a long path is not copied again. */
+/** Its arrays refer to the bytes of the chunk, so a long path is not copied again. */
 function readMoves(words: DataView): Moves {
   const count = words.getUint32(0, true);
   const places = 4;
@@ -134,7 +135,7 @@ function readChunk(kind: number, words: DataView): Chunk {
   }
 }
 
-/** Takes the bytes as they come, gives chunks that are whole. */
+/** Receives bytes, and returns complete chunks. */
 export class ChunkReader {
   private pieces: Uint8Array[] = [];
   private bytes = 0;
@@ -154,7 +155,7 @@ export class ChunkReader {
     }
   }
 
-  /** Bytes of a chunk that has begun and not ended. */
+  /** False while a chunk is incomplete. */
   get isWhole(): boolean {
     return this.bytes === 0;
   }
@@ -200,7 +201,7 @@ export class ChunkReader {
   }
 }
 
-/** Fills a buffer of its own; null where the stream ends before it. */
+/** Fills its own buffer; null if the stream ends before. */
 async function fill(reader: ReadableStreamBYOBReader, size: number): Promise<ArrayBuffer | null> {
   let buffer = new ArrayBuffer(size);
   let at = 0;
@@ -218,7 +219,7 @@ async function fill(reader: ReadableStreamBYOBReader, size: number): Promise<Arr
   return buffer;
 }
 
-/** What browsers read into buffers of ours leaves nothing to collect. */
+/** Reading into our own buffers leaves no garbage. */
 async function* readInto(reader: ReadableStreamBYOBReader): AsyncGenerator<Chunk> {
   for (;;) {
     const head = await fill(reader, HEAD_BYTES);
@@ -253,11 +254,11 @@ function bytesReader(body: ReadableStream<Uint8Array>): ReadableStreamBYOBReader
   try {
     return body.getReader({ mode: 'byob' });
   } catch {
-    return null; // its streams of bytes are none that we may give buffers to
+    return null; // its byte streams do not accept buffers
   }
 }
 
-/** All chunks of a stream, as they come. */
+/** All chunks of a stream, as they arrive. */
 export function readChunks(body: ReadableStream<Uint8Array>): AsyncGenerator<Chunk> {
   const reader = bytesReader(body);
   return reader === null ? readPieces(body.getReader()) : readInto(reader);

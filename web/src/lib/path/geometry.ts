@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where a pose is drawn: [DISPLAY]GEOMETRY, as the server does it with the points of a path.
+// Position of a pose in the picture: [DISPLAY]GEOMETRY, as the server applies it to the points of a path.
 import { AXIS_LETTERS, isAngularAxis } from '../status';
 
 export type Spot = [number, number, number];
@@ -9,7 +9,7 @@ interface Step {
   sign: number;
 }
 
-/** In the order in which they are done: from the last letter to the first. */
+/** In the order of execution: from the last letter to the first. */
 function stepsOf(geometry: string, axes: string): Step[] {
   const steps: Step[] = [];
   let sign = 1;
@@ -52,7 +52,7 @@ export function placer(geometry: string, axes: string): (pose: readonly number[]
   };
 }
 
-/** The picture has X, Y, Z of the machine: its limits can be drawn there. */
+/** True if the picture shows X, Y, Z of the machine, so that its limits can be drawn. */
 export function isPlain(geometry: string, axes: string): boolean {
   let hasMoved = false;
   for (const { axis, sign } of stepsOf(geometry, axes)) {

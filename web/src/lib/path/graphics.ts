@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 
-/** Graphics by the processor: each pixel counts. */
+/** True if the processor renders the graphics, so that each pixel costs time. */
 export function isSoftware(): boolean {
   const gl = document.createElement('canvas').getContext('webgl2');
   const facts = gl?.getExtension('WEBGL_debug_renderer_info');

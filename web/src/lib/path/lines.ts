@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Moves as what three.js draws, and back: the arrays are the same.
+// Moves as arrays of three.js, and back; the arrays are shared.
 import { BufferAttribute, BufferGeometry, Line, LineSegments, type Material } from 'three';
 import type { Moves } from './chunks';
 
-/** From each point to the next. */
+/** Lines from each point to the next. */
 export function makeLine(moves: Moves, material: Material): Line {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(moves.places, 3));
@@ -15,7 +15,7 @@ export function makeLine(moves: Moves, material: Material): Line {
   return new Line(geometry, material);
 }
 
-/** Each two points for themselves. */
+/** A separate line for each pair of points. */
 export function makeSegments(moves: Moves, material: Material): LineSegments {
   return new LineSegments(makeLine(moves, material).geometry, material);
 }

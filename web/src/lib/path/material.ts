@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a path is painted with.
+// The material of a path.
 import { Color, GLSL3, ShaderMaterial } from 'three';
 import type { ColorBy } from './shades';
 
@@ -15,14 +15,14 @@ export interface SceneColors {
   trail: string;
   /** From slow to fast. */
   scale: readonly string[];
-  /** Of tools; the next one begins anew. */
+  /** Colours of tools, repeated after the last one. */
   tools: readonly string[];
 }
 
 export const SCALE_STOPS = 5;
 export const TOOL_COLORS = 8;
 
-// What a move is belongs to the point at which it ends, which is the one that decides under `flat`.
+// Under `flat` the point at the end of a move determines its colour.
 const VERTEX = `
   in float kind;
   in float shade;
@@ -67,7 +67,7 @@ const FRAGMENT = `
 const NUMBERS: Record<ColorBy, number> = { kind: 0, feed: 1, tool: 2, speed: 1 };
 const NAMES = ['rapid', 'feed', 'arc', 'probe', 'current', 'background'] as const;
 
-/** Of the path, and of the other ends of a foam cutter's wire, which are paler. */
+/** For the path, and in paler colours for the other ends of a foam cutter's wire. */
 export class PathMaterials {
   readonly path: ShaderMaterial;
   readonly wire: ShaderMaterial;
@@ -104,7 +104,7 @@ export class PathMaterials {
     }
   }
 
-  /** False when it is that one already. */
+  /** False if it is the current line already. */
   setCurrentLine(line: number): boolean {
     const { currentLine } = this.path.uniforms;
     const isOther = currentLine !== undefined && currentLine.value !== line;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How much of a long path is drawn while something moves: as many pieces as keep a frame short on this computer. They lie in
-// the order of a shuffle, so that the first of them, however many, are spread over the whole path; nothing is sent to the
-// graphics card again.
+// The part of a long path that is drawn while something moves: as many pieces as keep a frame short on this
+// computer. The pieces are in shuffled order, so that the first ones, however many, cover the whole path;
+// nothing is sent to the graphics card again.
 import type { Moves } from './chunks';
 
-/** A frame of 30 Hz, with room for what else the page does. [ms] */
+/** A frame of 30 Hz, with a margin for other work of the page. [ms] */
 const LONG_MS = 28;
 const SHORT_MS = 18;
 const FEWEST = 1500;
 
-/** Pairs of points in another order, the same each time. */
+/** Pairs of points in another order, always the same. */
 export function shuffled(pairs: Moves): Moves {
   const count = pairs.count / 2;
   const order = Uint32Array.from({ length: count }, (_, i) => i);
@@ -51,7 +51,7 @@ export function joined(parts: readonly Moves[]): Moves {
   return out;
 }
 
-/** How many pieces the next frame has. */
+/** Number of pieces for the next frame. */
 export class Pace {
   private share: number;
 
@@ -66,7 +66,7 @@ export class Pace {
     return Math.floor(this.share);
   }
 
-  /** `ms`: the frame before took, from its start to that of this one. */
+  /** `ms`: duration of the previous frame, from its start to that of this one. */
   note(ms: number): void {
     if (ms > LONG_MS) {
       this.share *= Math.max(0.5, LONG_MS / ms);

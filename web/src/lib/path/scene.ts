@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The path, the tool and the limits of the machine, drawn after each change. Machine coordinates; Z points up.
+// The path, the tool and the limits of the machine, drawn after each change. Machine coordinates; Z points
+// up.
 import {
   Box3,
   BoxGeometry,
@@ -34,30 +35,30 @@ import { Trail } from './trail';
 import { halfSize, VIEWS, type ViewName } from './views';
 
 export type { SceneColors } from './material';
-/** A path with more points is drawn coarsely while something moves, where drawing is slow. */
+/** A path with more points is drawn coarsely during motion if drawing is slow. */
 const POINTS_IN_MOTION = 25_000;
 /** Along the diagonal of the path. */
 const CELLS = 250;
-/** So long a computer that draws slowly takes for POINTS_IN_MOTION; one with a GPU takes less than a tenth. */
+/** Drawing time for POINTS_IN_MOTION on a slow computer; one with a GPU takes less than a tenth. */
 const SLOW_MS = 6;
 const MOST_FRAME_TIMES = 600;
 /** Of a display. */
 const FRAME_MS = 16;
 const STILL_AFTER_MS = 180;
-/** Between frames of a long path while it is read: its reading and its drawing share the processor. */
+/** Interval between frames of a long path while it is read, because reading and drawing share the processor. */
 const READING_FRAME_MS = 250;
 
-/** Pieces of the path that are drawn coarsely at first, while the computer is not known. */
+/** Number of pieces drawn coarsely at first, while the speed of the computer is not known. */
 const FIRST_PACE = 6000;
 
-/** Of the edges of a lathe tool in the picture, as a part of the machine's room. */
+/** Length of the edges of a lathe tool in the picture, as a fraction of the machine's size. */
 const TIP_SHARE = 1 / 12;
 
-/** The same moves with all their points and with fewer; `coarse` while they are read. */
+/** The same moves with all points and with fewer; `coarse` while they are read. */
 interface Piece {
   /** Number of its first point. */
   first: number;
-  /** The other end of a foam cutter's wire. */
+  /** It is the other end of a foam cutter's wire. */
   isWire: boolean;
   whole: Line;
   fine: Line | null;
@@ -85,14 +86,14 @@ export class PathScene {
   private stillTimer: ReturnType<typeof setTimeout> | undefined;
   private readingTimer: ReturnType<typeof setTimeout> | undefined;
   private isMoving = false;
-  /** Whole pieces take too long for this computer. */
+  /** Complete pieces take too long for this computer. */
   private isSlow = false;
   private lastFrameAt = 0;
   private askedAt = 0;
-  /** The path in few pieces, for while something moves. */
+  /** The path in few pieces, for drawing during motion. */
   private motion: LineSegments | null = null;
   private pace = new Pace(0);
-  /** Pieces of the fine path that have been drawn over the coarse one; null: it is not being refined. */
+  /** Pieces of the fine path that have been drawn over the coarse path; null: no refinement is active. */
   private refined: number | null = null;
   private perFrame = 1;
   private isThinned = false;
@@ -100,7 +101,7 @@ export class PathScene {
   private generation = 0;
   private readonly seen = new Set<number>();
   private points = 0;
-  /** Between the last frames while something moved. [ms] */
+  /** Duration of the last frames during motion. [ms] */
   readonly frameTimes: number[] = [];
 
   constructor(canvas: HTMLCanvasElement) {
@@ -110,7 +111,8 @@ export class PathScene {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
-    this.controls.addEventListener('start', () => this.noteMotion()); // what is being refined does not come before its first move
+    // refinement must not occur before its first move
+    this.controls.addEventListener('start', () => this.noteMotion());
     this.controls.addEventListener('change', () => this.noteMotion());
     this.limits = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
     this.scene.add(this.path, this.limits, this.trail.line, this.tool, this.wire);
@@ -149,14 +151,14 @@ export class PathScene {
     this.draw();
   }
 
-  /** The first point is that at which the moves before have ended. `isWire`: the other end of the same moves, which come first. */
+  /** The first point is the end of the previous moves. `isWire`: the other end of the same moves, which come first. */
   addMoves(moves: Moves, isWire = false): void {
     const whole = makeLine(moves, this.materialOf(isWire));
     const first = isWire ? this.points - moves.count : Math.max(this.points - 1, 0);
     const isFirst = this.box.isEmpty();
     this.box.union(whole.geometry.boundingBox ?? new Box3());
     this.points = isWire ? this.points : first + moves.count;
-    // While it is read, a long path is drawn coarsely: what is drawn again with each chunk must be little.
+    // While a long path is read it is drawn coarsely, because each chunk causes a new drawing.
     const isLong = this.points > POINTS_IN_MOTION;
     const cell = this.box.getSize(new Vector3()).length() / CELLS;
     const coarse = isLong ? makeSegments(sparse(moves, cell, this.seen), this.materialOf(isWire)) : null;
@@ -174,14 +176,14 @@ export class PathScene {
     }
   }
 
-  /** The path has come to its end. */
+  /** Called at the end of the path. */
   async finish(): Promise<void> {
     this.isRead = true;
     this.fit();
     await this.prepareForMotion();
   }
 
-  /** What is drawn of a long path where drawing is slow is made, a piece at a time, so that jogs are renewed. */
+  /** Prepares the pieces of a long path for slow drawing one by one, so that jogs are renewed. */
   private async prepareForMotion(): Promise<void> {
     if (this.points <= POINTS_IN_MOTION) {
       this.showAll();
@@ -224,7 +226,7 @@ export class PathScene {
     this.draw();
   }
 
-  /** From now on by these values; by what moves are where there are none. */
+  /** Colours by these values from now on; without values by the type of moves. */
   async setColoring(by: ColorBy, ranges: Ranges | null, shading: Shading): Promise<void> {
     this.materials.colorBy(ranges === null ? 'kind' : by);
     if (ranges !== null) {
@@ -256,7 +258,7 @@ export class PathScene {
     this.draw();
   }
 
-  /** For tests: what is drawn of a long path while it is turned. */
+  /** For tests: the pieces of a long path that are drawn while it is rotated. */
   get piecesInMotion(): number {
     return this.pace.pieces;
   }
@@ -266,13 +268,16 @@ export class PathScene {
     return !this.box.isEmpty() && !this.limitBox.isEmpty() && !this.limitBox.clone().expandByScalar(slack).containsBox(this.box);
   }
 
-  /** Without limits: what is drawn is not in the coordinates that have them. */
+  /** Hides the limits, because the picture is not in their coordinates. */
   hideLimits(): void {
     this.limitBox.makeEmpty();
     this.limits.visible = false;
   }
 
-  /** Of the controlled point; with the trail of where it has been. `other`: the end of a foam cutter's wire. */
+  /**
+   * Position of the controlled point, with the trail of earlier positions. `other`: the end of a foam
+   * cutter's wire.
+   */
   setTool(spot: Spot, isCutting: boolean, other: Spot | null = null): void {
     const [x, y, z] = spot;
     const { position } = this.tool;
@@ -295,7 +300,7 @@ export class PathScene {
     this.noteMotion();
   }
 
-  /** From now on the tool of a lathe is drawn; null: there is none in the spindle. */
+  /** From now on draws the tool of a lathe; null: the spindle is empty. */
   setLatheTool(tip: LatheTip | null): void {
     this.isLatheTool = true;
     this.tip = tip;
@@ -341,7 +346,7 @@ export class PathScene {
     return view === 'xy' || view === 'uv' ? view : 'all';
   }
 
-  /** The path, or the room of the machine where there is none, fills the picture. */
+  /** Fits the path into the picture, or the machine's working space if there is no path. */
   fit(): void {
     const box = this.box.isEmpty() ? this.limitBox : this.box;
     if (box.isEmpty()) {
@@ -401,7 +406,7 @@ export class PathScene {
     this.draw();
   }
 
-  /** As large on the screen at any zoom. */
+  /** Keeps the size on the screen constant at any zoom. */
   private scaleTool(): void {
     if (this.isLatheTool) {
       return;
@@ -444,7 +449,7 @@ export class PathScene {
     }
   }
 
-  /** The fine path over the coarse one, a few pieces a frame, so that whoever touches it again does not wait for the whole. */
+  /** Draws the fine path over the coarse path, a few pieces in each frame, so that the next touch is not delayed. */
   private refine(done: number): void {
     const pieces = this.pieces.slice(done, done + this.perFrame);
     this.path.clear();
@@ -464,7 +469,7 @@ export class PathScene {
     }
   }
 
-  /** From the frame before, or from when this one was asked for where nothing was drawn between. */
+  /** Measured from the previous frame, or from the request of this frame if nothing was drawn in between. */
   private judgeFrame(): void {
     const now = performance.now();
     const took = now - Math.max(this.lastFrameAt, this.askedAt - FRAME_MS);
@@ -480,13 +485,13 @@ export class PathScene {
     }
   }
 
-  /** Draws the coarse path, which is short enough for everybody, and looks how long it takes. */
+  /** Draws the coarse path, which is short for any computer, and measures its time. */
   private measure(): boolean {
     this.path.clear();
     this.path.add(...(this.motion === null ? [] : [this.motion]));
     const gl = this.renderer.getContext();
     const pixel = new Uint8Array(4);
-    this.renderer.render(this.scene, this.camera); // what is made at first use
+    this.renderer.render(this.scene, this.camera); // created at first use
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
     const begin = performance.now();
     this.renderer.render(this.scene, this.camera);

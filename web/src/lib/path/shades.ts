@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Colours of a path by feed, tool or planned speed: one byte for each point, from ranges that begin at a point.
+// Colours of a path by feed, tool or planned speed: one byte for each point, from ranges that begin at a
+// point.
 import type { Moves } from './chunks';
 
 export type ColorBy = 'kind' | 'feed' | 'tool' | 'speed';
@@ -9,7 +10,7 @@ const RAPID = 0;
 const PROBE = 3;
 const MOST_SHADE = 255;
 
-/** Values along a path, each from a point on; points rise. Grows as it is read. */
+/** Values along a path, each from a point on, with increasing points. Grows while the path is read. */
 export class Ranges {
   private firsts = new Uint32Array(64);
   private values = new Float32Array(64);
@@ -35,7 +36,7 @@ export class Ranges {
     [this.firsts, this.values, this.count] = [new Uint32Array(64), new Float32Array(64), 0];
   }
 
-  /** The number of the range in which a point lies; -1: before the first. */
+  /** The number of the range that contains a point; -1: before the first. */
   rangeOf(point: number): number {
     let [low, high] = [0, this.count];
     while (low < high) {
@@ -57,7 +58,7 @@ export class Ranges {
     return range < 0 ? 0 : (this.values[range] ?? 0);
   }
 
-  /** All values that there are, without 0 ("none"). */
+  /** Minimum and maximum of all values except 0 ("none"). */
   extent(): { low: number; high: number } | null {
     let [low, high] = [Infinity, 0];
     for (let i = 0; i < this.count; ++i) {
@@ -79,7 +80,7 @@ export class Ranges {
   }
 }
 
-/** What a value is drawn as: 0 to 255. */
+/** Shade of a value: 0 to 255. */
 export type Shading = (value: number) => number;
 
 /** Along a scale from slow to fast. */
@@ -89,13 +90,13 @@ export function gradient(extent: { low: number; high: number } | null): Shading 
   return (value) => (span > 0 ? Math.round((Math.min(Math.max(value - low, 0), span) / span) * MOST_SHADE) : MOST_SHADE);
 }
 
-/** Each tool its own, in their order. */
+/** One shade for each tool, in their order. */
 export function byNumber(numbers: readonly number[]): Shading {
   const places = new Map(numbers.map((one, i) => [one, i]));
   return (value) => (places.get(value) ?? 0) & MOST_SHADE;
 }
 
-/** Shades of points that begin with number `first`. */
+/** Shades of points, beginning with number `first`. */
 export function shade(moves: Moves, first: number, ranges: Ranges, shading: Shading): void {
   const { shades, count } = moves;
   let range = ranges.rangeOf(first);
@@ -111,7 +112,7 @@ export function shade(moves: Moves, first: number, ranges: Ranges, shading: Shad
   }
 }
 
-/** Moves that have no feed keep their own colour whatever the others have. */
+/** Moves without a feed keep their own colour independent of other moves. */
 export function hasOwnColor(kind: number): boolean {
   return kind === RAPID || kind === PROBE;
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is drawn of a long path while something moves: where it passes, once, in cells of a size. What a software renderer
-// takes is the length of all lines in pixels: a path that covers a place many times is drawn there once.
+// The picture of a long path during motion: its course, drawn once in cells of a given size. The time of a
+// software renderer depends on the length of all lines in pixels, so a path that covers an area many times is
+// drawn there only once.
 import type { Moves } from './chunks';
 
 const SPAN = 1 << 16;
 
-/** Pairs of points, each a piece of the path in a cell where nothing was yet. `seen` goes from chunk to chunk. */
+/** Pairs of points, each a piece of the path in a cell that is still empty. `seen` is shared by all chunks. */
 export function sparse(moves: Moves, cell: number, seen: Set<number>): Moves {
   const { places, lines, kinds, shades, count } = moves;
   const kept: number[] = [];

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A path with fewer points that looks the same from afar: for the time in which it is turned.
+// A path with fewer points that has the same appearance from a distance, for use while it is rotated.
 import type { Moves } from './chunks';
 
-/** With more of its points than this, a path is not worth a copy with fewer. */
+/** If more than this fraction of the points remain, a reduced copy is not made. */
 const WORTH_A_COPY = 0.5;
 
-/** Keeps the ends of moves of another kind, and points farther than `distance` from the last one kept; the moves themselves
- * where that would be most of them. */
+/**
+ * Keeps the ends of moves of another type, and points farther than `distance` from the last one kept; returns
+ * the moves unchanged if most of them would remain.
+ */
 export function thin(moves: Moves, distance: number): Moves {
   const { places, lines, kinds, shades, count } = moves;
   const kept: number[] = count > 0 ? [0] : [];

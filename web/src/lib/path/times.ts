@@ -18,10 +18,10 @@ export interface TimeSum {
   slowest: SlowSpot[];
 }
 
-/** Moves between two sums of time. */
+/** Number of moves between two sums of time. */
 const BLOCK = 1024;
 
-/** All moves in their order; grows as it is read. */
+/** All moves in order; grows while the times are read. */
 export class Times {
   private lines = new Uint32Array(BLOCK);
   private seconds = new Float32Array(BLOCK);
@@ -69,14 +69,14 @@ export class Times {
     return sum;
   }
 
-  /** The next move of a line, from one on; -1: there is none. */
+  /** The next move of a line, beginning with one; -1: there is none. */
   next(line: number, from: number): number {
     const found = this.lines.subarray(0, this.count).indexOf(line, from);
     return found;
   }
 }
 
-/** Follows a program by the lines that the machine tells, through loops and calls. */
+/** Follows a program by the lines that the machine reports, through loops and calls. */
 export class Follower {
   private move = 0;
   private within = 0;
@@ -84,7 +84,7 @@ export class Follower {
 
   constructor(private readonly times: Times) {}
 
-  /** `line`: of the move under way; `seconds`: that the machine has moved since the last call. Gives the time left. */
+  /** `line`: line of the current move; `seconds`: motion time since the last call. Returns the remaining time. */
   follow(line: number, seconds: number): number {
     const { times } = this;
     if (line > 0 && (!this.hasBegun || times.line(this.move) !== line)) {
@@ -97,7 +97,7 @@ export class Follower {
     }
     if (this.hasBegun) {
       this.within += seconds;
-      // Moves of one line follow each other without being told apart.
+      // Consecutive moves of one line cannot be distinguished.
       while (this.within > times.duration(this.move) && times.line(this.move + 1) === line && this.move + 1 < times.count) {
         this.within -= times.duration(this.move);
         this.move += 1;

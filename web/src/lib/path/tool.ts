@@ -5,16 +5,16 @@ import { BufferAttribute, BufferGeometry, ConeGeometry, DoubleSide, Line, LineBa
 export interface LatheTip {
   /** 1 to 9, as in the tool table. 0: not known. */
   orientation: number;
-  /** Of the nose. [machine units] */
+  /** Diameter of the nose. [machine units] */
   diameter: number;
-  /** Of the edges, from Z+ towards X+. [degrees] */
+  /** Angle of the edges, from Z+ towards X+. [degrees] */
   frontangle_deg: number;
   backangle_deg: number;
 }
 
 /** From the centre of the nose to the controlled point, in radii along Z and X, by orientation. */
 const SHIFTS: readonly (readonly [number, number])[] = [[0, 0], [1, -1], [-1, -1], [-1, 1], [1, 1], [1, 0], [0, -1], [-1, 0], [0, 1], [0, 0]];
-/** Where the tool comes from when its edges have no angles: away from the controlled point. */
+/** Half angle of the body if its edges have no angles; it points away from the controlled point. */
 const WIDE_DEG = 40;
 const NOSE_POINTS = 24;
 
@@ -23,7 +23,7 @@ function cross(o: Point, a: Point, b: Point): number {
 }
 type Point = readonly [number, number];
 
-/** The points around all of them, counter-clockwise. */
+/** The convex hull, counter-clockwise. */
 function hull(points: Point[]): Point[] {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const half = (list: Point[]): Point[] => {
@@ -39,7 +39,10 @@ function hull(points: Point[]): Point[] {
   return [...half(sorted), ...half(sorted.reverse())];
 }
 
-/** Outline of a tip around its controlled point at 0, as points of Z and X; its edges are `length` long. [machine units] */
+/**
+ * Outline of a tip around its controlled point at 0, as points of Z and X; its edges have the length
+ * `length`. [machine units]
+ */
 export function tipOutline(tip: LatheTip, length: number): Point[] {
   const radius = Math.max(tip.diameter / 2, length / 60);
   const [shiftZ, shiftX] = SHIFTS[tip.orientation] ?? [0, 0];
@@ -73,7 +76,7 @@ export function makeCone(): Mesh {
   return new Mesh(geometry, new MeshBasicMaterial({ transparent: true, opacity: 0.85, side: DoubleSide }));
 }
 
-/** The tip in the plane of X and Z, seen from both sides. */
+/** The tip in the XZ plane, visible from both sides. */
 export function tipGeometry(tip: LatheTip, length: number): BufferGeometry {
   const shape = new Shape();
   tipOutline(tip, length).forEach(([z, x], i) => (i === 0 ? shape.moveTo(x, z) : shape.lineTo(x, z)));

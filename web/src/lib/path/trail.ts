@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where the tool has cut lately.
+// The last part of the tool path.
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial } from 'three';
 
 const MOST_POINTS = 4000;

@@ -5,8 +5,10 @@ import type { Spot } from './geometry';
 
 export type ViewName = 'top' | 'front' | 'side' | 'iso' | 'lathe' | 'back_lathe' | 'xy' | 'uv';
 
-/** Where the camera is, seen from what it looks at, and what is up in the picture. A lathe has Z to the right, and X downwards
- * where the tool is before the part. */
+/**
+ * Position of the camera relative to its target, and the upward direction of the picture. A lathe has Z to
+ * the right, and X downwards if the tool is in front of the part.
+ */
 export const VIEWS: Record<ViewName, { from: Spot; up: Spot; isFlat?: boolean }> = {
   top: { from: [0, -0.0001, 1], up: [0, 0, 1] },
   front: { from: [0, -1, 0], up: [0, 0, 1] },
@@ -18,7 +20,7 @@ export const VIEWS: Record<ViewName, { from: Spot; up: Spot; isFlat?: boolean }>
   uv: { from: [0, -0.0001, 1], up: [0, 0, 1], isFlat: true },
 };
 
-/** Of a box as the camera has it, from its middle to the right and upwards; never nothing. */
+/** Half size of a box in the camera's view, to the right and upwards; never zero. */
 export function halfSize(box: Box3, toCamera: Matrix4): [number, number] {
   let [wide, high] = [1e-3, 1e-3];
   for (let i = 0; i < 8; ++i) {

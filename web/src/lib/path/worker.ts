@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Reads a path off the main thread, which renews the leases of jogs meanwhile.
+// Reads a path outside of the main thread, which renews the leases of jogs in this time.
 import { readChunks, type Chunk } from './chunks';
 
 export interface PathOrder {
@@ -23,7 +23,8 @@ async function read(order: PathOrder, signal: AbortSignal): Promise<void> {
   for await (const chunk of readChunks(answer.body)) {
     isEnded = isEnded || chunk.kind === 'end';
     const news: PathNews = { number: order.number, chunk };
-    const moved = chunk.kind === 'moves' || chunk.kind === 'wires' ? [chunk.places.buffer, chunk.shades.buffer] : []; // places, lines and kinds share one
+    // points, lines and types share one buffer
+    const moved = chunk.kind === 'moves' || chunk.kind === 'wires' ? [chunk.places.buffer, chunk.shades.buffer] : [];
     postMessage(news, { transfer: moved as ArrayBuffer[] });
   }
   if (!isEnded) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// States of a field along the program. A checkpoint keeps only the tiles that have changed since the one before, and when there is no
-// more memory every second checkpoint is left out.
+// States of a field along the program. A checkpoint stores only the tiles that have changed since the
+// previous one. If memory is short, every second checkpoint is removed.
 import { TILE, type Field } from './field';
 
 interface Version {
@@ -12,12 +12,12 @@ interface Version {
 const BYTES_PER_CELL = 5;
 
 export class Checkpoints {
-  /** Moves that have been done at each checkpoint; rising. The first is 0. */
+  /** Number of moves done at each checkpoint; increasing. The first is 0. */
   private moves: number[] = [];
   private readonly versions: Version[][];
-  /** Which version of a tile the field has, or -1 when it has changed since. */
+  /** Version of each tile in the field, or -1 if it has changed since. */
   private bytes = 0;
-  /** Doubled each time memory was short: between two checkpoints. */
+  /** Number of moves between two checkpoints; doubled when memory is short. */
   stride = 1;
 
   constructor(
@@ -35,7 +35,7 @@ export class Checkpoints {
     return this.moves[this.moves.length - 1] ?? -1;
   }
 
-  /** Keeps the field as it is after so many moves. */
+  /** Stores the field after this number of moves. */
   add(moves: number): void {
     const checkpoint = this.moves.length;
     this.moves.push(moves);
@@ -71,8 +71,10 @@ export class Checkpoints {
     return this.moves[checkpoint] ?? 0;
   }
 
-  /** The field as it was at a checkpoint. `shown`: the checkpoint from which it has come here; tiles that have not changed between the two
-   * stay. */
+  /**
+   * Restores the field at a checkpoint. `shown`: the current checkpoint; tiles that have not changed between
+   * the two are kept.
+   */
   restore(checkpoint: number, shown: number): void {
     const { field } = this;
     for (let tile = 0; tile < this.versions.length; ++tile) {
@@ -127,7 +129,7 @@ export class Checkpoints {
     }
   }
 
-  /** Leaves out every second checkpoint, but not the first and the last. */
+  /** Removes every second checkpoint, but not the first and the last. */
   private thin(): void {
     const { length } = this.moves;
     const kept = this.moves.map((_, i) => i).filter((i) => i % 2 === 0 || i === length - 1);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Time along a program: estimated from feeds at first, then as the planner has calculated it.
+// Time along a program: first estimated from feeds, then as calculated by the planner.
 import type { TimedMoves } from '../path/times_worker';
 import { JUMP, RAPID, type Moves } from './moves';
 
-/** Where the feed is not known. [mm/s] */
+/** If the feed is not known. [mm/s] */
 const SLOWEST_MM_S = 1;
 
 export class Clock {
@@ -35,7 +35,10 @@ export class Clock {
     return this.times[this.times.length - 1] ?? 0;
   }
 
-  /** Times of the planner, in the order of the program. A move of the planner may have several points: they share its time by length. */
+  /**
+   * Times from the planner, in the order of the program. If a move of the planner has several points, its
+   * time is divided by length.
+   */
   take(timed: TimedMoves): void {
     this.planned ??= new Float64Array(this.times.length);
     const { planned } = this;
@@ -67,7 +70,7 @@ export class Clock {
     }
   }
 
-  /** Time after `moves`; a fraction is a part of the next one. */
+  /** Time after `moves`; a fraction is a part of the next move. */
   at(moves: number): number {
     const move = Math.min(Math.max(Math.floor(moves), 0), this.times.length - 1);
     const [begin, end] = [this.times[move] as number, this.times[Math.min(move + 1, this.times.length - 1)] as number];

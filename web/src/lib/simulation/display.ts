@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The field in fewer cells, to be drawn: each has the lowest of its cells, so that narrow grooves stay visible. Only tiles that have
-// changed are calculated again.
+// The field with fewer cells for drawing. Each cell has the lowest of its cells, so that narrow grooves
+// remain visible. Only changed tiles are calculated again.
 import { TILE, type Field } from './field';
 
 export interface Picture {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The stock as a field of heights: one height for each cell, exact at the middle of the cell. Tiles note what has changed.
+// The stock as a field of heights: one height for each cell, exact at the middle of the cell. Tiles record
+// changes.
 import type { Stock } from './stock';
 
 /** Cells along the side of a tile; a power of two. */
@@ -7,7 +8,7 @@ export const TILE = 64;
 export const MOST_CELLS = 4_000_000;
 const MOST_TILES = 1 << 16;
 
-/** The tool that made a surface: none yet. */
+/** Number for a surface that no tool has cut. */
 export const UNCUT = 0;
 
 export class Field {
@@ -16,13 +17,13 @@ export class Field {
   readonly tiles_x: number;
   readonly tiles_y: number;
   readonly heights: Float32Array;
-  /** 1 and up: the tools in the order in which the program uses them. */
+  /** 1 and up: tools in the order in which the program uses them. */
   readonly makers: Uint8Array;
   readonly bottom: number;
   readonly top: number;
   readonly x0: number;
   readonly y0: number;
-  /** Sizes of a cell: whole numbers of cells fill the stock. */
+  /** Sizes of a cell; a whole number of cells fills the stock. */
   readonly cell_x: number;
   readonly cell_y: number;
   /** Changed since the last checkpoint, and since the last picture. */
@@ -31,7 +32,7 @@ export class Field {
 
   constructor(
     readonly stock: Stock,
-    /** Wanted size of a cell. */
+    /** Requested size of a cell. */
     readonly cell: number,
   ) {
     [this.x0, this.y0] = stock.low;
@@ -74,7 +75,7 @@ export class Field {
     }
   }
 
-  /** The upper side of all triangles. */
+  /** Fills in the upper side of all triangles. */
   private fillMesh(triangles: Float32Array): void {
     this.heights.fill(this.bottom);
     for (let at = 0; at + 9 <= triangles.length; at += 9) {
@@ -110,7 +111,7 @@ export class Field {
     return Math.hypot(x - (low[0] + high[0]) / 2, y - (low[1] + high[1]) / 2) <= radius;
   }
 
-  /** Notes a change of cells in a row. */
+  /** Records a change of cells in a row. */
   mark(row: number, first: number, last: number): void {
     const base = (row >> 6) * this.tiles_x;
     for (let tile = first >> 6; tile <= last >> 6; ++tile) {
@@ -119,7 +120,7 @@ export class Field {
     }
   }
 
-  /** What is left of the stock. [mm³] */
+  /** Volume of the remaining stock. [mm³] */
   volume(): number {
     let sum = 0;
     for (const height of this.heights) {

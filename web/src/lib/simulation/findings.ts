@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the simulation has found: one entry for each line of the program.
+// Findings of the simulation: one entry for each line of the program.
 
-/** From the worst on. */
+/** In order of severity. */
 export const FINDING_KINDS = ['fixture', 'holder', 'rapid', 'floor'] as const;
 export type FindingKind = (typeof FINDING_KINDS)[number];
 
 export interface Finding {
   line: number;
   kinds: FindingKind[];
-  /** Number of the move, and how far along it. */
+  /** Number of the move, and the fraction along it. */
   move: number;
   part: number;
   tool: number;
   /** Of the deepest contact. Work coordinates. [mm] */
   depth: number;
   place: [number, number, number];
-  /** Of the fixture that is hit. */
+  /** Name of the fixture that is hit. */
   fixture: string;
 }
 
@@ -23,7 +23,7 @@ export const MOST_FINDINGS = 1000;
 
 export class Findings {
   private readonly by_line = new Map<number, Finding>();
-  /** Lines that found no place in the list. */
+  /** Number of lines that did not fit into the list. */
   dropped = 0;
 
   add(kind: FindingKind, found: Omit<Finding, 'kinds'>): void {
@@ -44,7 +44,7 @@ export class Findings {
     known.fixture ||= found.fixture;
   }
 
-  /** In the order in which the program meets them. */
+  /** In the order of the program. */
   list(): Finding[] {
     return [...this.by_line.values()].sort((a, b) => a.move - b.move || a.part - b.part);
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where a running machine is in the moves of its program, by the line that it reports and the position of its tool.
+// Position of a running machine in the moves of its program, from the reported line and the tool position.
 import type { Moves } from './moves';
 import type { Triple } from './stock';
 
-/** Moves of one line that are searched: an arc or a cycle. */
+/** Maximum number of moves of one line that are searched: an arc or a cycle. */
 const MOST_SEARCHED = 20_000;
 
 export class Follower {
@@ -11,12 +11,12 @@ export class Follower {
 
   constructor(private readonly moves: Moves) {}
 
-  /** The program has been started again. */
+  /** Called when the program has been started again. */
   restart(): void {
     this.done = 0;
   }
 
-  /** Moves done, with a part of the current one; it never goes back. */
+  /** Moves done, with a fraction of the current one; never decreases. */
   follow(line: number, tip: Triple): number {
     const { moves } = this;
     const current = Math.floor(this.done) + 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the operator has entered for the simulation: shapes of tools, and the stock of the last programs.
+// Input of the operator for the simulation: shapes of tools, and the stock of the last programs.
 import type { ToolShape } from './shapes';
 import type { Fixture, Stock } from './stock';
 
@@ -12,9 +12,9 @@ export interface KeptStock {
 
 export interface KeptSimulation {
   colorBy: 'tool' | 'depth';
-  /** By tool number: what the tool table does not have. */
+  /** By tool number: data that the tool table does not have. */
   tools: Record<string, Omit<ToolShape, 'diameter_mm'>>;
-  /** The newest first. */
+  /** Newest first. */
   stocks: KeptStock[];
 }
 

@@ -5,7 +5,7 @@ import type { Box } from './stock';
 
 export const RAPID = 0;
 export const PROBE = 3;
-/** Between two points at which the tool offset changes: the tip is elsewhere, and nothing has moved. */
+/** A step between two points at which the tool offset changes: the tip has another position, but nothing has moved. */
 export const JUMP = 4;
 
 /** A longer program is simulated up to this point. */
@@ -37,7 +37,7 @@ export class Moves {
   feeds = new Float32Array(1024);
   count = 0;
   readonly tools: ToolRange[] = [];
-  /** The program is longer than what is kept. */
+  /** The program is longer than the stored part. */
   isCut = false;
   /** Points of the server before each jump. */
   private readonly jumps: number[] = [];
@@ -137,7 +137,7 @@ export class Moves {
     this.feeds = grown(this.feeds, new Float32Array(size));
   }
 
-  /** Index of a point that the server counts. */
+  /** Index of a point with the server's number. */
   indexOf(served: number): number {
     let [low, high] = [0, this.jumps.length];
     while (low < high) {
@@ -165,7 +165,7 @@ export class Moves {
     return this.tools[low]?.tool ?? 0;
   }
 
-  /** Around all moves that cut; null: there are none. */
+  /** Extents of all cutting moves; null: there are none. */
   cuts(): Box | null {
     const box: Box = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
     for (let i = 1; i < this.count; ++i) {
@@ -176,7 +176,7 @@ export class Moves {
       for (let axis = 0; axis < 3; ++axis) {
         const [a, b] = [this.points[i * 3 - 3 + axis] as number, this.points[i * 3 + axis] as number];
         box.low[axis] = Math.min(box.low[axis] as number, a, b);
-        // The top is where cuts end, not where a feed begins in the air.
+        // The top is the end of cuts, not the start of a feed in the air.
         box.high[axis] = Math.max(box.high[axis] as number, axis === 2 ? Math.min(a, b) : Math.max(a, b));
       }
     }

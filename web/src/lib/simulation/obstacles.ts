@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Moves of a tool against boxes: fixtures, and the floor below the stock.
+// Checks moves of a tool with boxes: fixtures, and the floor below the stock.
 import { CONTACT_MM, type Segment } from './sweep';
 import { heightAt, type Cutter } from './shapes';
 import type { Box } from './stock';
 
 const ROUNDS = 40;
 
-/** From a point of the move to a box, in the plane. */
+/** Distance from a point of the move to a box, in the plane. */
 function distanceTo(box: Box, x: number, y: number): number {
   const dx = Math.max(box.low[0] - x, 0, x - box.high[0]);
   const dy = Math.max(box.low[1] - y, 0, y - box.high[1]);
   return Math.hypot(dx, dy);
 }
 
-/** How deep a tool comes into a box from above, and where along the move; null: it does not touch it. `lift`: what is checked begins so
- * far above the tip. The height of the tool over the box is convex along the move: its lowest point is searched. */
+/**
+ * Depth of a tool in a box from above, and its position along the move; null if it does not touch the box.
+ * `lift`: distance from the tip to the checked part. The height of the tool over the box is convex along the
+ * move, so its lowest point is searched.
+ */
 export function depthIn(box: Box, move: Segment, cutter: Cutter, lift: number): { depth: number; part: number } | null {
   const radius = cutter.radius;
   const outside =
@@ -25,7 +28,7 @@ export function depthIn(box: Box, move: Segment, cutter: Cutter, lift: number): 
   }
   const clearance = (part: number): number => {
     const distance = distanceTo(box, move.x0 + part * (move.x1 - move.x0), move.y0 + part * (move.y1 - move.y0)) + CONTACT_MM;
-    // Outside the radius the tool counts as a steep cone, so that the search has a slope to follow.
+    // Outside the radius the tool is treated as a steep cone, so that the search has a slope.
     const STEEP = 1e4;
     const height = distance <= radius ? heightAt(cutter, distance) : heightAt(cutter, radius) + STEEP * (distance - radius);
     return move.z0 + part * (move.z1 - move.z0) + lift + height;

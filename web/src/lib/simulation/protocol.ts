@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the page and the worker of the simulation send each other.
+// Messages between the page and the worker of the simulation.
 import type { Picture } from './display';
 import type { Finding } from './findings';
 import type { Frame } from './moves';
 import type { ToolShape } from './shapes';
 import type { Box, Stock, Surroundings, Triple } from './stock';
 
-/** `number` rises with each program: news of an older one are dropped. */
+/** `number` increases with each program; messages about an older one are dropped. */
 export type Order =
   | { kind: 'open'; number: number; file: string; frame: Frame; first_tool: number; rapid_mm_s: number; times: { feed: number; rapid: number; max_velocity: number } }
   | { kind: 'prepare'; number: number; setup: Surroundings & { stock: Stock; tools: [number, ToolShape][] } }
   | { kind: 'show'; number: number; at: Position; most: number }
   | { kind: 'close'; number: number };
 
-/** A point of the program. `line`: the first move of it after the shown one, or the first of all. `machine`: of a running machine. */
+/**
+ * A point of the program. `line`: its first move after the shown one, or its first move. `machine`: position
+ * of a running machine.
+ */
 export type Position =
   | { moves: number }
   | { seconds: number }
@@ -25,7 +28,7 @@ export interface Facts {
   lines: number;
   cuts: Box | null;
   tools: number[];
-  /** The first line that moves A, B or C; null: there is none. */
+  /** The first line that moves A, B or C; null if there is none. */
   rotary_line: number | null;
   isCut: boolean;
   /** Errors of the interpreter. */
@@ -40,7 +43,7 @@ export interface Shown {
   tool: number;
   isRapid: boolean;
   picture: Picture;
-  /** The line that was asked for has no move. */
+  /** The requested line has no move. */
   isMissing: boolean;
 }
 

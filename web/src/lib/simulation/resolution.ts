@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The size of the cells: as small as memory and time allow, so that a program of any length is prepared in a few seconds.
+// The size of the cells: as small as memory and time permit, so that a program of any length is prepared in a
+// few seconds.
 import { MOST_CELLS } from './field';
 import { JUMP, type Moves } from './moves';
 import { BULL, FLAT, type Cutter } from './shapes';
 import type { Stock } from './stock';
 
-/** Cells that all moves together look at, by a round tool. */
+/** Number of cells examined by all moves together, for a round tool. */
 export const MOST_WORK = 100_000_000;
-/** Cost of a cell for a flat tool at one height, and for a bull nose that rises or falls, compared with others. */
+/** Relative cost of a cell for a flat tool at one height, and for a bull nose that rises or falls. */
 const LEVEL_COST = 0.4;
 const BULL_COST = 2.5;
 const LEAST_CELL_MM = 0.005;
@@ -36,7 +37,7 @@ export function sweptArea(moves: Moves, cutters: ReadonlyMap<number, Cutter>, st
   return area;
 }
 
-/** Length of a move along an axis inside the stock; negative: it is outside. */
+/** Length of a move along an axis inside the stock; negative if it is outside. */
 function within(a: number, b: number, stock: Stock, axis: 0 | 1, radius: number): number {
   const low = Math.max(Math.min(a, b), stock.low[axis] - radius);
   const high = Math.min(Math.max(a, b), stock.high[axis] + radius);
@@ -45,7 +46,7 @@ function within(a: number, b: number, stock: Stock, axis: 0 | 1, radius: number)
 
 export function chooseCell(moves: Moves, cutters: ReadonlyMap<number, Cutter>, stock: Stock): number {
   const area = (stock.high[0] - stock.low[0]) * (stock.high[1] - stock.low[1]);
-  // Where rows and columns are rounded up there may be a few more cells.
+  // Rounding up rows and columns may add a few cells.
   const forMemory = Math.sqrt(area / (MOST_CELLS * 0.98));
   return Math.max(LEAST_CELL_MM, forMemory, Math.sqrt(sweptArea(moves, cutters, stock) / MOST_WORK));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One program in the worker: its moves, their simulation, and what is shown of it. It gives way to other orders every few milliseconds.
+// One program in the worker: its moves, their simulation, and its picture. It yields to other messages every
+// few milliseconds.
 import type { Chunk } from '../path/chunks';
 import { Clock } from './clock';
 import { Display } from './display';
@@ -8,7 +9,7 @@ import { JUMP, Moves, PROBE, RAPID, type Frame } from './moves';
 import type { Facts, Position, Prepared, Shown } from './protocol';
 import { Simulation, type Setup } from './simulation';
 
-/** Cells and moves between two looks for other orders. */
+/** Number of cells and moves between two checks for other messages. */
 const CELLS_PER_SLICE = 3_000_000;
 const MOVES_PER_SLICE = 20_000;
 const MOST_ERRORS = 50;
@@ -43,7 +44,7 @@ export class Session {
     }
   }
 
-  /** The path has been read. */
+  /** Called when the path has been read. */
   finish(): Facts {
     const { moves } = this;
     this.clock = new Clock(moves, this.rapid_mm_s);
@@ -60,7 +61,7 @@ export class Session {
     };
   }
 
-  /** Tools that only travel need no diameter. */
+  /** Tools that only move in the air need no diameter. */
   private hasMoves(first: number, end: number): boolean {
     for (let i = Math.max(first, 1); i < end; ++i) {
       if (![RAPID, JUMP, PROBE].includes(this.moves.kinds[i] ?? RAPID)) {
@@ -70,7 +71,7 @@ export class Session {
     return false;
   }
 
-  /** Null: another preparation has begun, or it was cancelled. */
+  /** Null if another preparation has begun, or it was cancelled. */
   async prepare(setup: Setup, pause: () => Promise<void>, report: (part: number) => void): Promise<Prepared | null> {
     const mine = ++this.preparations;
     this.isPrepared = false;
@@ -103,7 +104,7 @@ export class Session {
     this.preparations += 1;
   }
 
-  /** Nothing before it is prepared. */
+  /** No effect before it is prepared. */
   show(at: Position, most: number): Shown | null {
     const { simulation, display, clock, moves } = this;
     if (simulation === null || display === null || clock === null || !this.isPrepared) {
@@ -140,7 +141,7 @@ export class Session {
     }
     const { lines, count } = this.moves;
     const all = lines.subarray(0, count);
-    // The end of the line's first move: what it has cut is seen.
+    // The end of the line's first move, where its cut is visible.
     const found = all.indexOf(at.line, 1);
     if (found < 0) {
       return null;

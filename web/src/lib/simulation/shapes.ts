@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Shapes of milling tools: the height of the cutting surface above the tip, by distance from the axis. All of them are convex,
-// so that the lowest point of a tool that moves along a line is unique. [mm]
+// Shapes of milling tools: the height of the cutting surface above the tip, by distance from the axis. All
+// are convex, so the lowest point of a tool that moves along a line is unique. [mm]
 
 export type ShapeName = 'flat' | 'ball' | 'bull' | 'vee' | 'drill';
 export const SHAPE_NAMES: readonly ShapeName[] = ['flat', 'ball', 'bull', 'vee', 'drill'];
@@ -8,13 +8,13 @@ export const SHAPE_NAMES: readonly ShapeName[] = ['flat', 'ball', 'bull', 'vee',
 export interface ToolShape {
   shape: ShapeName;
   diameter_mm: number;
-  /** Of a bull-nose mill. */
+  /** Radius of a bull-nose mill. */
   corner_radius_mm: number;
   /** Included angle of a V tool or the point of a drill. */
   point_angle_deg: number;
-  /** Of the flat at the point of a V tool. */
+  /** Diameter of the flat at the point of a V tool. */
   tip_diameter_mm: number;
-  /** From the tip to the holder; null: not known, and the holder is not checked. */
+  /** From the tip to the holder; null: unknown, and the holder is not checked. */
   stickout_mm: number | null;
   holder_diameter_mm: number;
 }
@@ -24,13 +24,13 @@ export const CONE = 1;
 export const BULL = 2;
 export const FLAT = 3;
 
-/** What the sweep calculates with. */
+/** Data for the calculation of the sweep. */
 export interface Cutter {
   kind: typeof ROUND | typeof CONE | typeof BULL | typeof FLAT;
   radius: number;
   /** The surface is level up to this distance from the axis. */
   flat_radius: number;
-  /** Of a corner. */
+  /** Radius of a corner. */
   corner: number;
   /** Rise per distance of a cone. */
   slope: number;
@@ -74,7 +74,7 @@ export function heightAt(cutter: Cutter, distance: number): number {
   return cutter.kind === CONE ? cutter.slope * beyond : cutter.corner - Math.sqrt(Math.max(0, cutter.corner * cutter.corner - beyond * beyond));
 }
 
-/** Words of tool comments, in the languages of the screen. */
+/** Words of tool comments in the languages of the screen. */
 const WORDS: readonly [RegExp, ShapeName][] = [
   [/bull|corner|radius|torus|torisch|t[oó]ric/i, 'bull'],
   [/ball|kugel|esf[eé]r|bola|sph/i, 'ball'],
@@ -82,7 +82,7 @@ const WORDS: readonly [RegExp, ShapeName][] = [
   [/\bv\b|v-?bit|vee|engrav|gravier|grabad|chamfer|fase|chafl[aá]n/i, 'vee'],
 ];
 
-/** From what the tool table has: the shape is a guess from the comment, the operator corrects it. */
+/** From the data of the tool table: the shape is a guess from the comment, which the operator can correct. */
 export function guessShape(diameter_mm: number, comment: string): ToolShape {
   const shape = WORDS.find(([words]) => words.test(comment))?.[1] ?? 'flat';
   const angle = Number(/(\d{2,3}(?:\.\d+)?)\s*(?:°|deg|grad)/i.exec(comment)?.[1] ?? NaN);

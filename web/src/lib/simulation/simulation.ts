@@ -14,12 +14,12 @@ import { Tops } from './tops';
 export interface Setup extends Surroundings {
   stock: Stock;
   tools: ReadonlyMap<number, ToolShape>;
-  /** Null: chosen from the sizes of the stock and the tools and the length of the program. */
+  /** Null: selected from the sizes of the stock and the tools and the length of the program. */
   cell_mm: number | null;
 }
 
 const MOST_MAKERS = 255;
-/** Memory of all checkpoints, and cells and moves between two of them. */
+/** Memory for all checkpoints, and the number of cells and moves between two of them. */
 export interface CheckpointLimits {
   bytes: number;
   cells: number;
@@ -37,11 +37,11 @@ interface Mill {
 export class Simulation {
   readonly field: Field;
   readonly findings = new Findings();
-  /** Tools that the program uses and that have no diameter: their moves remove nothing. */
+  /** Tools of the program without a diameter; their moves remove nothing. */
   readonly unknown_tools: number[] = [];
-  /** Moves that have been prepared. */
+  /** Number of prepared moves. */
   prepared = 0;
-  /** Moves that the field has: whole ones, and a part of the next. */
+  /** Moves in the field: whole moves, and a fraction of the next. */
   shown = 0;
   private readonly sweep: Sweep;
   private readonly checkpoints: Checkpoints;
@@ -85,7 +85,7 @@ export class Simulation {
     });
   }
 
-  /** Tools in the order of the numbers that the field keeps, from 1 on. */
+  /** Tools in the order of the numbers in the field, from 1. */
   makers(): number[] {
     return [...this.mills.keys()];
   }
@@ -98,12 +98,12 @@ export class Simulation {
     return this.checkpoints.count;
   }
 
-  /** Cells examined since the start. */
+  /** Number of cells examined since the start. */
   get work(): number {
     return this.sweep.cells;
   }
 
-  /** Prepares further moves, at most so many cells and moves. True: the program is at its end. */
+  /** Prepares further moves, at most this many cells and moves. True at the end of the program. */
   prepare(most_cells: number, most_moves: number): boolean {
     const { sweep, checkpoints } = this;
     const stop = sweep.cells + most_cells;
@@ -127,7 +127,10 @@ export class Simulation {
     return false;
   }
 
-  /** Shows the field after `wanted` moves; a fraction is a part of the next one. To be called when all is prepared. */
+  /**
+   * Shows the field after `wanted` moves; a fraction is a part of the next move. Call it when everything is
+   * prepared.
+   */
   goTo(wanted: number): void {
     const target = Math.min(Math.max(wanted, 0), this.moveCount);
     const checkpoint = this.checkpoints.before(Math.floor(target));
@@ -171,7 +174,7 @@ export class Simulation {
     }
   }
 
-  /** Of the tool that does a move; nothing where it has no diameter. */
+  /** The tool of a move; null if it has no diameter. */
   private millOf(move: number): Mill | undefined {
     const { tools } = this.moves;
     if ((tools[this.range]?.first ?? 0) > move) {
@@ -192,7 +195,7 @@ export class Simulation {
     }
   }
 
-  /** The tool has been at the start of the move, and has cut there what it cuts. */
+  /** True if the tool was at the start of the move and has already cut there. */
   private isContinued(move: number): boolean {
     const before = this.moves.kinds[move - 1];
     return move > 1 && before !== JUMP && before !== PROBE && (this.moves.tools[this.range]?.first ?? 0) < move;

@@ -37,10 +37,12 @@ function readText(bytes: ArrayBuffer): Float32Array | null {
   return numbers.length > 0 && numbers.length % 9 === 0 ? Float32Array.from(numbers) : null;
 }
 
-/** In the coordinates of the file, which are work coordinates; `unit_mm`: millimetres of its unit. Null: it is no STL file, has too many
- * triangles, or no volume. */
+/**
+ * In the coordinates of the file, which are work coordinates; `unit_mm`: millimetres of its unit. Null if it
+ * is not an STL file, has too many triangles, or no volume.
+ */
 export function readStl(bytes: ArrayBuffer, unit_mm: number): Stock | null {
-  // A text file begins with `solid`; so do some binary ones, whose length fits their count.
+  // A text file begins with `solid`. So do some binary files, whose length matches their count.
   const words = new DataView(bytes);
   const isBinary = bytes.byteLength >= HEAD_BYTES && bytes.byteLength === HEAD_BYTES + words.getUint32(80, true) * TRIANGLE_BYTES;
   const triangles = isBinary ? readBinary(bytes) : (readText(bytes) ?? readBinary(bytes));

@@ -10,10 +10,10 @@ export interface Box {
 
 export interface Stock {
   kind: 'box' | 'cylinder' | 'mesh';
-  /** Around the stock; the axis of a cylinder is parallel to Z in its middle, its diameter is the smaller side. */
+  /** Extents of the stock. The axis of a cylinder is parallel to Z in the middle, its diameter is the smaller side. */
   low: Triple;
   high: Triple;
-  /** Triangles of a mesh, nine numbers each, from the lower corner. Seen from above: it has no undercuts. */
+  /** Triangles of a mesh, nine numbers each, relative to the lower corner. Seen from above, without undercuts. */
   triangles?: Float32Array;
 }
 
@@ -23,19 +23,22 @@ export interface Fixture extends Box {
 
 export interface Surroundings {
   fixtures: Fixture[];
-  /** Height of the table or of the lowest point that a tool may reach. */
+  /** Height of the table, or of the lowest point that a tool may reach. */
   floor_mm: number;
 }
 
-/** Around the moves of a program that cut with a tool of this radius, with an allowance at the sides and below, so that a pocket has walls and
- * a floor. Its top is Z0 where the program cuts below that, otherwise the end of the highest cut. */
+/**
+ * Stock around the moves that cut with a tool of this radius, with an allowance at the sides and below, so
+ * that a pocket has walls and a floor. Its top is Z0 if the program cuts below Z0, otherwise the end of the
+ * highest cut.
+ */
 export function stockAround(cuts: Box, radius_mm: number, allowance_mm: number): Stock {
   const [low, high]: [Triple, Triple] = [[...cuts.low], [...cuts.high]];
   for (const axis of [0, 1]) {
     low[axis] = (low[axis] ?? 0) - radius_mm - allowance_mm;
     high[axis] = (high[axis] ?? 0) + radius_mm + allowance_mm;
   }
-  // Bores that are left by a feed, and approaches, are above the stock.
+  // Approaches, and retracts from bores at feed, are above the stock.
   high[2] = low[2] < 0 ? 0 : high[2];
   low[2] -= allowance_mm;
   const LEAST_MM = 1;

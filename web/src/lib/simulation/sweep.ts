@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Removes what a tool sweeps along a straight move. For each cell the lowest point of the tool over the whole move is calculated
-// in closed form (a bull nose: by bisection), so that the length of a move does not change the result.
+// Removes the material that a tool sweeps along a straight move. For each cell the lowest point of the tool
+// over the whole move is calculated in closed form (for a bull nose by bisection), so the length of a move
+// does not affect the result.
 import type { Field } from './field';
 import { CONE, FLAT, ROUND, type Cutter } from './shapes';
 import { BLOCK, type Tops } from './tops';
@@ -20,19 +21,19 @@ export interface Contact {
   x: number;
   y: number;
   z: number;
-  /** Along the move, 0 to 1. */
+  /** Fraction of the move, 0 to 1. */
   part: number;
 }
 
-/** Nearer contacts than this do not count: arcs are chords, and numbers have 24 bits. [mm] */
+/** Contacts below this depth are ignored, because arcs are chords and numbers have 24 bits. [mm] */
 export const CONTACT_MM = 0.02;
-/** The height is level at the lowest point: an error of the place is much smaller in the height. */
+/** At the lowest point the height is level, so an error of the position causes a much smaller error of the height. */
 const BISECTIONS = 14;
 
-/** One move over a field. It is made once and used for all moves, so that nothing is allocated for a move. */
+/** One move over a field. The object is used for all moves, so that moves do not allocate memory. */
 export class Sweep {
   readonly contact: Contact = { depth: 0, x: 0, y: 0, z: 0, part: 0 };
-  /** Cells examined since the start: the cost. */
+  /** Number of cells examined since the start, a measure of the cost. */
   cells = 0;
   private length = 0;
   private dx = 0;
@@ -45,8 +46,10 @@ export class Sweep {
 
   constructor(private readonly field: Field) {}
 
-  /** `isContinued`: the same tool has already cut where the move begins. `maker` 0: cuts nothing. `watches`: finds the deepest
-   * contact; contacts nearer than CONTACT_MM do not count. */
+  /**
+   * `isContinued`: the same tool has already cut at the start of the move. `maker` 0: cuts nothing.
+   * `watches`: finds the deepest contact; contacts below CONTACT_MM are ignored.
+   */
   run(move: Segment, cutter: Cutter, maker: number, isContinued: boolean, watches: boolean): void {
     const { field, contact } = this;
     contact.depth = 0;
@@ -81,8 +84,11 @@ export class Sweep {
     }
   }
 
-  /** Looks whether a flat cylinder, as a holder, touches the stock. It stops at the first block of cells with a contact: a holder is much
-   * larger than a tool, and each move would examine all cells below it. */
+  /**
+   * Checks whether a flat cylinder, such as a holder, touches the stock. It stops at the first block of cells
+   * with a contact, because a holder is much larger than a tool and each move would examine all cells below
+   * it.
+   */
   look(move: Segment, cutter: Cutter, tops: Tops): void {
     const { field, contact } = this;
     contact.depth = 0;
@@ -132,7 +138,7 @@ export class Sweep {
     this.rise = isVertical ? 0 : (move.z1 - move.z0) / this.length;
   }
 
-  /** Where a row meets all points within the radius of the move: `begin` to `end`. */
+  /** Range in a row of all points within the radius of the move: `begin` to `end`. */
   private span(y: number): void {
     const { move, dx, dy } = this;
     const { radius } = this.cutter;
@@ -163,7 +169,7 @@ export class Sweep {
     this.end = end;
   }
 
-  /** Leaves out cells behind the start of a move that does not descend: the tool has cut them where it was. */
+  /** Omits cells behind the start of a move that does not descend, because the tool has cut them at its position. */
   private cutBehind(y: number): void {
     const { move, dx, dy } = this;
     const off = (y - move.y0) * dy;
@@ -269,7 +275,10 @@ export class Sweep {
     return kind === CONE ? slope * beyond : corner - Math.sqrt(Math.max(0, corner * corner - beyond * beyond));
   }
 
-  /** How far from the foot of a cell on the move the tool is when it cuts the cell lowest, without the ends of the move. */
+  /**
+   * Position of the tool relative to the foot of a cell on the move when it cuts the cell lowest, without the
+   * ends of the move.
+   */
   private lowest(square: number, width: number): number {
     const { rise, cutter } = this;
     if (rise === 0) {

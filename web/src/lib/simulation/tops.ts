@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The highest cell of each block of a field. Heights only fall while a program is prepared, so a value that is out of date is too high and
-// never hides a contact.
+// The highest cell of each block of a field. Heights only decrease while a program is prepared, so an
+// outdated value is too high and never hides a contact.
 import type { Field } from './field';
 
 /** Cells along the side of a block. */
@@ -17,7 +17,7 @@ export class Tops {
     this.values = new Float32Array(this.wide * this.high).fill(field.top);
   }
 
-  /** Whether a block may have something above a height. */
+  /** True if a block may be above a height. */
   isAbove(block: number, height: number): boolean {
     return (this.values[block] as number) > height && this.measure(block) > height;
   }

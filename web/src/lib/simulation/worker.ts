@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The simulation off the main thread, which renews the leases of jogs meanwhile.
+// The simulation outside of the main thread, which renews the leases of jogs in this time.
 import { readChunks } from '../path/chunks';
 import type { News, Order } from './protocol';
 import { Session } from './session';
@@ -7,7 +7,7 @@ import { Session } from './session';
 let session: Session | null = null;
 let number = 0;
 let reading: AbortController | null = null;
-/** The newest wish: those before it are not shown. */
+/** The newest request; earlier ones are not shown. */
 let wanted: Extract<Order, { kind: 'show' }> | null = null;
 let isShowing = false;
 
@@ -15,7 +15,7 @@ function tell(news: News, moved: ArrayBufferLike[] = []): void {
   postMessage(news, { transfer: moved as ArrayBuffer[] });
 }
 
-/** Lets messages in that have come meanwhile; a timer would wait for milliseconds. */
+/** Lets waiting messages in; a timer would wait for milliseconds. */
 function pause(): Promise<void> {
   return new Promise((done) => {
     const { port1, port2 } = new MessageChannel();
@@ -31,7 +31,7 @@ const TOO_MANY = 429;
 const TRIES = 15;
 const RETRY_MS = 1000;
 
-/** The server reads few programs at a time: where other views or screens have theirs read, this one waits. */
+/** The server reads only a few programs at a time, so this request waits for those of other views or screens. */
 async function fetchBody(address: string, signal: AbortSignal): Promise<ReadableStream<Uint8Array>> {
   let answer = await fetch(address, { signal });
   for (let tries = 1; answer.status === TOO_MANY && tries < TRIES; ++tries) {
@@ -76,7 +76,7 @@ function tellClock(of: number, from: Session): void {
   tell({ number: of, kind: 'clock', total_s: from.clock?.total ?? 0, isPlanned: from.clock?.isPlanned ?? false });
 }
 
-/** Without them, because the planner cannot calculate them, the estimate stays. */
+/** If the planner cannot calculate the times, the estimate is kept. */
 async function readTimes(order: Extract<Order, { kind: 'open' }>, into: Session, signal: AbortSignal): Promise<void> {
   const { feed, rapid, max_velocity } = order.times;
   const query = new URLSearchParams({ file: order.file, feed: String(feed), rapid: String(rapid), max_velocity: String(max_velocity) });
@@ -129,7 +129,7 @@ function fail(of: number, error: unknown): void {
 addEventListener('message', (event: MessageEvent<Order>) => {
   const order = event.data;
   if (order.kind === 'show') {
-    // A machine that has been started again is not forgotten by the next position.
+    // A restart of the machine must not be lost when the next position arrives.
     const isNew = wanted !== null && 'machine' in wanted.at && wanted.at.machine.isNew;
     wanted = isNew && 'machine' in order.at ? { ...order, at: { machine: { ...order.at.machine, isNew } } } : order;
     void show();

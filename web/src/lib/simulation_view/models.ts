@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Tool, holder, fixtures and axes as three.js draws them. Z points up. [mm]
+// Models of tool, holder, fixtures and axes for three.js. Z points up. [mm]
 import { BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, EdgesGeometry, LatheGeometry, Vector2 } from 'three';
 import { cutterOf, heightAt, type ToolShape } from '../simulation/shapes';
 import type { Box } from '../simulation/stock';
@@ -7,12 +7,12 @@ import type { Box } from '../simulation/stock';
 const SIDES = 32;
 const PROFILE_POINTS = 12;
 
-/** Of the drawing, where the length of a tool is not known. */
+/** Length in the drawing if the length of a tool is not known. */
 export function drawnStickout(tool: ToolShape): number {
   return tool.stickout_mm ?? Math.max(4 * tool.diameter_mm, 25);
 }
 
-/** With its tip at 0. */
+/** The tool with its tip at 0. */
 export function toolGeometry(tool: ToolShape): BufferGeometry {
   const cutter = cutterOf(tool);
   const points = [new Vector2(0, 0)];
@@ -52,7 +52,7 @@ export function edgesOf(box: Box): BufferGeometry {
   return edges;
 }
 
-/** X, Y and Z of the work coordinates, from their origin; with a colour for each. */
+/** X, Y and Z of the work coordinates from their origin, each with a colour. */
 export function axesGeometry(length: number): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(Float32Array.of(0, 0, 0, length, 0, 0, 0, 0, 0, 0, length, 0, 0, 0, 0, 0, 0, length), 3));

@@ -19,13 +19,13 @@ export interface SceneColors extends SurfaceColors {
   finding: string;
 }
 
-/** Cells of the picture along a side while it changes, and when it is still. */
+/** Maximum cells of the picture along a side while it changes, and when it is still. */
 const MOST_IN_MOTION = { software: 96, hardware: 512 };
 const MOST_STILL = { software: 384, hardware: 1024 };
 const MOST_FRAME_TIMES = 600;
 const STILL_AFTER_MS = 180;
 
-/** A little wider than the stock. */
+/** Slightly wider than the stock. */
 function floorUnder(stock: Stock, floor_mm: number): { low: Triple; high: Triple } {
   const margin = Math.max(stock.high[0] - stock.low[0], stock.high[1] - stock.low[1]) / 10;
   return { low: [stock.low[0] - margin, stock.low[1] - margin, floor_mm], high: [stock.high[0] + margin, stock.high[1] + margin, floor_mm] };
@@ -37,7 +37,7 @@ export class SimulationScene {
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera(-100, 100, 100, -100, -1e5, 1e5);
   private readonly controls: OrbitControls;
-  /** What is drawn while something moves, and when all is still. */
+  /** Drawn during motion, and when everything is still. */
   private readonly coarse = new Surface();
   private readonly fine = new Surface();
   private hasFine = false;
@@ -56,9 +56,9 @@ export class SimulationScene {
   private shown_tool = '';
   private frame = 0;
   private last_frame = 0;
-  /** Between the last frames that followed each other. [ms] */
+  /** Duration of the last consecutive frames. [ms] */
   readonly frameTimes: number[] = [];
-  /** Pictures that have been drawn. */
+  /** Number of drawn pictures. */
   pictures = 0;
 
   constructor(canvas: HTMLCanvasElement) {
@@ -227,7 +227,7 @@ export class SimulationScene {
     this.coarse.mesh.visible = !isFine;
   }
 
-  /** The camera moves: the fine surface comes back when it is still. */
+  /** The camera moves; the fine surface returns when it is still. */
   private noteMotion(): void {
     if (this.hasFine) {
       this.choose(false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The simulation of the open program: it lives on while other views are open.
+// The simulation of the open program, which continues while other views are open.
 import { machine } from '../machine.svelte';
 import { isPlain } from '../path/geometry';
 import { keepPreferences, prefs } from '../prefs.svelte';
@@ -31,7 +31,7 @@ interface State {
   floor_mm: number;
   /** The picture follows the machine. */
   isLive: boolean;
-  /** Number of the finding that is shown; -1: none. */
+  /** Number of the shown finding; -1: none. */
   chosen: number;
 }
 
@@ -42,11 +42,14 @@ export const simulation = $state<State>({ ...EMPTY });
 let worker: Worker | null = null;
 let number = 0;
 let opened = '';
-/** In which the open program has been read. */
+/** The frame in which the open program was read. */
 let frame: Frame = { origin: [0, 0, 0], rotation_deg: 0, unit_mm: 1 };
-/** Where the program was shown last: the picture stays there when it is calculated again, as after a change of the stock. */
+/**
+ * The last shown position of the program. It is kept when the program is calculated again, for instance after
+ * a change of the stock.
+ */
 let place: { file: string; moves: number; at: number } | null = null;
-/** The last one that was entered on this page: a mesh is too large for the preferences. */
+/** The stock last entered on this page, because a mesh is too large for the preferences. */
 let entered: KeptStock | null = null;
 let isMoving = false;
 let cells = { moving: 128, still: 384 };
@@ -63,7 +66,7 @@ export function unitMm(): number {
   return machine.facts?.linear_unit === 'inch' ? MM_PER_INCH : 1;
 }
 
-/** Work coordinates that are active now. */
+/** The active work coordinates. */
 export function activeFrame(): Frame {
   const offsets = machine.status?.offsets;
   const rotation_deg = offsets?.rotation_xy_deg ?? 0;
@@ -74,14 +77,14 @@ export function activeFrame(): Frame {
   return { origin, rotation_deg, unit_mm: unitMm() };
 }
 
-/** Machine coordinates of the controlled point as the tool tip in work coordinates. [mm] */
+/** Converts machine coordinates of the controlled point to the tool tip in work coordinates. [mm] */
 export function tipOf(pose: readonly number[], tool: readonly number[], of: Frame): Triple {
   const angle = (of.rotation_deg * Math.PI) / 180;
   const [x, y, z] = [0, 1, 2].map((axis) => (pose[axis] ?? 0) - (tool[axis] ?? 0) - (of.origin[axis] ?? 0)) as Triple;
   return [(x * Math.cos(angle) + y * Math.sin(angle)) * of.unit_mm, (y * Math.cos(angle) - x * Math.sin(angle)) * of.unit_mm, z * of.unit_mm];
 }
 
-/** Of a tool of the program: diameter from the tool table, the rest as entered or guessed from the comment. */
+/** Shape of a tool of the program: diameter from the tool table, other data as entered or guessed from the comment. */
 export function shapeOf(tool: number): ToolShape {
   const found = tools.list.slice(1).find((one) => one.toolno === tool);
   const diameter_mm = (found?.diameter ?? 0) * unitMm();
@@ -97,7 +100,10 @@ function isSupported(): boolean {
   return facts?.kind === 'mill' && isPlain(facts.geometry, facts.axes);
 }
 
-/** To be called in an effect while the view is open: reads the open program, again when it, the offsets or the tools have changed. */
+/**
+ * Call it in an effect while the view is open: reads the open program, and again when it, the offsets or the
+ * tools have changed.
+ */
 export function followProgram(): void {
   const name = machine.isConnected ? openName() : null;
   const active = activeFrame();
@@ -190,7 +196,7 @@ function begin(facts: Facts): void {
   prepare();
 }
 
-/** With the stock and the shapes as they are now. */
+/** With the current stock and shapes. */
 export function prepare(): void {
   const { stock, facts } = simulation;
   if (stock === null || facts === null) {
@@ -205,7 +211,7 @@ export function prepare(): void {
   send({ kind: 'prepare', number, setup: { ...setup, tools: [...all].map((tool) => [tool, shapeOf(tool)]) } });
 }
 
-/** Takes over what has been entered. */
+/** Applies the entered data. */
 export function useStock(stock: Stock, fixtures: Fixture[], floor_mm: number): void {
   Object.assign(simulation, { stock, fixtures, floor_mm });
   const file = openName();
@@ -217,7 +223,7 @@ export function useStock(stock: Stock, fixtures: Fixture[], floor_mm: number): v
   prepare();
 }
 
-/** The stock that the program's cuts need. */
+/** The stock required by the program's cuts. */
 function firstStock(facts: Facts): Stock | null {
   const radius_mm = Math.max(0, ...facts.tools.map((tool) => shapeOf(tool).diameter_mm / 2));
   return facts.cuts === null ? null : stockAround($state.snapshot(facts.cuts), radius_mm, ALLOWANCE_MM);
@@ -262,7 +268,7 @@ export function show(at: Position, isInMotion: boolean): void {
 let isRunningBefore = false;
 let lastSeen = '';
 
-/** To be called with each status: the picture follows the machine while a program runs. */
+/** Call it with each status: the picture follows the machine while a program runs. */
 export function followMachine(): void {
   const { status } = machine;
   const isRunning = status !== null && status.task.mode === 'AUTO' && status.task.interp_state !== 'IDLE';

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The stock as a shaded surface: a flat grid that the vertex shader lifts to the heights of a texture. A new picture changes the texture
-// only.
+// The stock as a shaded surface: a flat grid that the vertex shader raises to the heights of a texture. A new
+// picture changes only the texture.
 import { BufferAttribute, BufferGeometry, Color, DataTexture, FloatType, GLSL3, Mesh, NearestFilter, RedFormat, ShaderMaterial, UnsignedByteType, Vector2, Vector3 } from 'three';
 import type { Picture } from '../simulation/display';
 import type { Stock } from '../simulation/stock';
 
 export const MAKER_COLORS = 8;
 
-// A ring of points around the cells goes down to the bottom: the sides of the stock.
+// A ring of points around the cells extends down to the bottom and forms the sides of the stock.
 const VERTEX = `
   precision highp float;
   precision highp sampler2D;

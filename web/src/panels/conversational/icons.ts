@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Values of the pictures by which an operation is chosen: few and large details.
+// Values of the pictures for the selection of operations: few and large details.
 import { packed } from '../../lib/conversational/dxf';
 import type { Values } from '../../lib/conversational/types';
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The program of the forms. It belongs to the page, so that another view of it does not lose the values; a reload keeps them too.
+// The program of the forms. It belongs to the page, so another view does not lose the values; a reload keeps
+// them, too.
 import { tc } from '../../lib/conversational/i18n/index.svelte';
 import { contextOf, newJob, type MachineFacts } from '../../lib/conversational/job';
 import { operationOf } from '../../lib/conversational/registry';
@@ -15,17 +16,17 @@ const MM_PER_INCH = 25.4;
 
 export interface FormState {
   job: JobTexts;
-  /** Of the list; -1: the program itself. */
+  /** Index in the list; -1: the program itself. */
   selected: number;
-  /** The file that the values were read from or written to; null: none yet. */
+  /** The file from which the values were read or to which they were written; null: none yet. */
   file: string | null;
-  /** Checksum of its text then: a file that was changed since is not replaced without a question. */
+  /** Checksum of its text at that time: a file that was changed since is only replaced after a question. */
   sum: string;
   isChanged: boolean;
   nextId: number;
 }
 
-/** The forms that fit the machine; null: none do. */
+/** The forms that fit the machine; null if there are none. */
 export function machineKind(): 'mill' | 'lathe' | null {
   const kind = machine.facts?.kind ?? 'mill';
   return kind === 'mill' ? 'mill' : kind === 'foam' ? null : 'lathe';
@@ -41,7 +42,7 @@ function kept(): FormState | null {
     const isGood = value !== null && value.job.version === 1 && typeof value.job.name === 'string' && typeof value.job.safe === 'string' && Array.isArray(value.job.steps) && value.job.steps.every((one) => operationOf(one.type) !== null && typeof one.texts === 'object');
     return isGood && value.job.machine === machineKind() ? value : null;
   } catch {
-    return null; // of an older page, or not allowed
+    return null; // of an older page, or no access
   }
 }
 
@@ -51,7 +52,7 @@ export function keep(): void {
   try {
     localStorage.setItem(KEY, JSON.stringify(form));
   } catch {
-    // Full or not allowed: the values stay until the page is reloaded.
+    // Full or no access: the values are kept until the page is reloaded.
   }
 }
 
@@ -71,19 +72,22 @@ export function startOver(): void {
   Object.assign(form, freshState(form.job.unit));
 }
 
-/** `file` and its `text`; null: the values are to be saved as a new one. */
+/** `file` and its `text`; null: the values are saved as a new file. */
 export function openJob(job: Job, from: { file: string; text: string } | null): void {
   const texts = textsOf(job, decimalSeparator());
   Object.assign(form, { job: texts, selected: texts.steps.length > 0 ? 0 : -1, file: from?.file ?? null, sum: from === null ? '' : checksum(from.text), isChanged: from === null, nextId: texts.steps.length });
 }
 
-/** Words of tool comments by which the tool of an operation is proposed. */
+/** Words of tool comments for proposing the tool of an operation. */
 const TOOL_WORDS: Record<string, RegExp> = { turn: /rough|turn|schrupp|dreh|desbast|cilindr/i, lathe_face: /rough|turn|fac|schrupp|dreh|desbast|refren/i, chamfer: /finish|turn|schlicht|dreh|acabad|cilindr/i, radius: /finish|turn|schlicht|dreh|acabad|cilindr/i, lathe_bore: /bor(e|ing)|innen|mandrin/i, groove: /groov|stech|ranur/i, part_off: /part|abstech|tronz/i, lathe_thread: /thread|gewinde|rosc/i, drill: /drill|bohrer|broca/i, tap: /\btap\b|gewindebohrer|macho/i, bore: /bor(e|ing)|ausdreh|mandrin/i, thread_mill: /thread|gewindefr|rosca/i, engrave: /engrav|gravier|graba/i };
 const MILL = /mill|fräs|fresa/i;
 const NO_FLAT = /ball|kugel|bola|esf[eé]r|thread|gewinde|rosca/i;
 const CUTTERS = new Set(['face', 'rect_pocket', 'round_pocket', 'slot', 'rect_boss', 'round_boss', 'contour']);
 
-/** The tool of an operation before that needs the same type of tool, or one whose comment names that type; empty: none is known. */
+/**
+ * The tool of a previous operation with the same type of tool, or one whose comment names that type; empty if
+ * none is known.
+ */
 function proposedTool(type: string): string {
   const isSame = (other: string): boolean => other === type || (CUTTERS.has(type) && CUTTERS.has(other));
   const before = form.job.steps.findLast((one) => isSame(one.type));
@@ -141,7 +145,7 @@ export function setText(at: number, id: string, text: string): void {
   form.isChanged = true;
 }
 
-/** What a field shows: what was typed, or its default. */
+/** Content of a field: the typed value, or its default. */
 export function shownText(at: number, id: string): string {
   const step = form.job.steps[at];
   const typed = step?.texts[id];

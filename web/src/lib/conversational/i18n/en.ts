@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Texts of conversational programming; the other catalogues have the same keys. The view that shows a text replaces {name}.
+// Texts of conversational programming; the other catalogues have the same keys. The view that shows a text
+// replaces {name}.
 
 export const en = {
   'op.turn': 'Turn',

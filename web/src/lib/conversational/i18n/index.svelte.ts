@@ -12,7 +12,7 @@ export function tc(key: ConvKey, values?: Values): string {
   return fill((CATALOGUES[prefs.language] ?? en)[key], values);
 }
 
-/** A text whose key is put together; the key itself where there is none (M30). */
+/** A text with a computed key; the key itself if there is no text (M30). */
 export function named(key: string, otherwise = key): string {
   return key in en ? tc(key as ConvKey) : otherwise;
 }

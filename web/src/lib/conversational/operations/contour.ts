@@ -48,7 +48,7 @@ function layerFault(text: string, values: Values): Fault | null {
 
 export const chainTolerance = (context: Context): number => nice(context.unit, 0.01, 0.0005);
 
-/** The contours of the layer where the form puts them. */
+/** The contours of the layer at the position of the form. */
 export function contoursOf(values: Values, context: Context): Path[] | Fault {
   const layer: Entity[] = (unpacked(word(values, 'drawing')) ?? []).filter((one) => one.layer === word(values, 'layer'));
   const found = chained(layer, chainTolerance(context));
@@ -57,12 +57,12 @@ export function contoursOf(values: Values, context: Context): Path[] | Fault {
 
 interface Cuts {
   rough: Path;
-  /** Null: the first path is the last one, too. */
+  /** Null: the first path is also the last one. */
   finish: Path | null;
   isLoop: boolean;
 }
 
-/** The tool lies to the left of what this returns. */
+/** The tool is to the left of the returned path. */
 function oriented(path: Path, side: string): Path {
   const isLeftInside = side === 'inside' || side === 'outside' ? signedArea(path) > 0 === (side === 'inside') : side !== 'right';
   return isLeftInside ? path : reversed(path);

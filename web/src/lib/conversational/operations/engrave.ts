@@ -35,7 +35,7 @@ function textFault(text: string): Fault | null {
   return text.trim() === '' ? { key: 'fault.no_text' } : text.length > MOST_LETTERS ? { key: 'fault.long_text', values: { high: MOST_LETTERS } } : null;
 }
 
-/** Where the tool goes: each stroke is one cut. */
+/** The tool path: each stroke is one cut. */
 export function engravedStrokes(values: Values): Point[][] {
   const { strokes, width } = strokesOfText(word(values, 'text'), num(values, 'text_height'));
   const before = { left: 0, centre: width / 2, right: width }[word(values, 'align')] ?? 0;

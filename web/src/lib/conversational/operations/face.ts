@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Faces a rectangle: straight cuts along X, each from outside the material to outside.
+// Faces a rectangle with straight cuts along X, which begin and end outside the material.
 import { choice, depthFields, feedDown, lengthFault, levelCount, margin, nice, position, size, stepDown, stepOver, toolFields } from '../fields';
 import { num, word, type Context, type Operation, type Values } from '../types';
 import { levelsOf, type Writer } from '../writer';
@@ -39,7 +39,7 @@ function write(writer: Writer, values: Values, context: Context): void {
   const low = isCorner ? num(values, 'y') : num(values, 'y') - width / 2;
   const [clearance, radius] = [num(values, 'clearance'), diameter / 2];
   const [from, to] = [left - radius - clearance, left + length + radius + clearance];
-  // The last cut overlaps the edge a little, so that no burr is left on it.
+  // The last cut overlaps the edge slightly, so that no burr remains.
   const covered = width + 0.05 * diameter;
   const cuts = Math.max(1, Math.ceil(covered / num(values, 'step_over') - 1e-9));
   const step = covered / cuts;

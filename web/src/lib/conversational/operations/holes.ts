@@ -9,7 +9,7 @@ import type { Writer } from '../writer';
 const isCycle = (...names: string[]) => (values: Values): boolean => names.includes(word(values, 'cycle'));
 const between = (): Field => choice('between', ['safe', 'clearance'], 'safe', { reason: 'why.between' });
 
-/** Positions with a cycle: the first line names it, the next ones only the position. */
+/** Positions with a cycle: the first line has the cycle, the following lines only the position. */
 function cycle(writer: Writer, values: Values, context: Context, first: string): void {
   const points = holesOf(values);
   writer.rapid({ z: context.safe });
@@ -62,7 +62,7 @@ export const drill: Operation = {
   },
 };
 
-/** The feed that the pitch and the speed make; the field is the pitch. */
+/** The feed from pitch and speed; the field is the pitch. */
 export const pitchLimits = (values: Values, context: Context) => (context.maxFeed === null ? [] : [{ high: context.maxFeed / num(values, 'speed'), key: 'fault.pitch_feed' as const, values: { feed: num(values, 'pitch') * num(values, 'speed'), high: context.maxFeed } }]);
 
 export const tap: Operation = {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Operations of a lathe. X is a diameter. The theoretical tip of a turning tool (orientation 2, of a boring bar 3) follows the path.
+// Operations of a lathe. X is a diameter. The theoretical tip of a turning tool (orientation 2, for a boring
+// bar 3) follows the path.
 import { count, choice, diameterOf, field, lengthFault, margin, nice, position, size, speedField, toolFields, within } from '../fields';
 import { num, word, type Context, type Faults, type Field, type Limit, type Operation, type Values } from '../types';
 import type { Writer } from '../writer';
@@ -7,7 +8,7 @@ import type { Writer } from '../writer';
 const isSurface = (values: Values): boolean => word(values, 'speed_mode') === 'surface';
 const revsOf = (values: Values): number => num(values, isSurface(values) ? 'limit_speed' : 'speed');
 
-/** The feed of the fastest revolution must not exceed that of the machine. */
+/** The feed at the maximum speed must not exceed that of the machine. */
 function revLimits(values: Values, context: Context): Limit[] {
   const most = nice(context.unit, 5, 0.2);
   const limits: Limit[] = [{ low: 0, isOpen: true, key: 'fault.above_zero' }, { low: nice(context.unit, 0.001, 0.0001), key: 'fault.at_least', values: { low: nice(context.unit, 0.001, 0.0001) } }, { high: most, key: 'fault.at_most', values: { high: most } }];
@@ -85,13 +86,16 @@ function depthLeft(values: Values): Faults {
   return num(values, 'z_start') - num(values, 'z_end') <= num(values, 'allowance') + num(values, 'nose') ? { z_end: { key: 'fault.z_short' } } : {};
 }
 
-/** Cuts along Z from the diameter `from` to `to`, then once along the finished wall and its shoulder. `sign`: where the air is. */
+/**
+ * Cuts along Z from the diameter `from` to `to`, then once along the finished wall and its shoulder. `sign`:
+ * the side without material.
+ */
 function lengthways(writer: Writer, values: Values, { from, to, sign }: { from: number; to: number; sign: 1 | -1 }): void {
   const [feed, start, end, allowance] = [num(values, 'feed_rev'), num(values, 'z_start'), num(values, 'z_end'), num(values, 'allowance')];
   const clear = num(values, 'clearance');
   const front = start + clear;
   const away = from + 2 * sign * clear;
-  // A tool that is lifted at an angle leaves no mark, and stays in the air.
+  // A tool that is retracted at an angle leaves no mark, and remains outside the material.
   const lift = Math.min(clear, (start - end) / 2) / 4;
   writer.rapid({ z: front });
   writer.rapid({ x: away });
@@ -127,7 +131,7 @@ export const latheFace: Operation = {
   write(writer, values) {
     const [feed, clear] = [num(values, 'feed_rev'), num(values, 'clearance')];
     const out = num(values, 'stock_diameter') + 2 * clear;
-    // At the centre the round of the nose passes it; a shoulder is not cut.
+    // At the centre the nose radius passes it; a shoulder is not cut.
     const end = num(values, 'end_diameter') > 0 ? num(values, 'end_diameter') : -2 * num(values, 'nose');
     const allowance = num(values, 'allowance');
     const depths = cutsOf(faceDepth(values) - allowance, num(values, 'cut'));
@@ -147,7 +151,7 @@ export const latheFace: Operation = {
 /** Z of the reference edge of a tool whose left edge is at `left`. */
 const edgeZ = (values: Values, left: number): number => (word(values, 'tool_edge') === 'left' ? left : left + num(values, 'tool_width'));
 
-/** Into the material in pecks, each with a short retract that breaks the chip. */
+/** Moves into the material in pecks, each with a short retract that breaks the chip. */
 function peckIn(writer: Writer, values: Values, from: number, to: number): void {
   const feed = num(values, 'feed_rev');
   const back = Math.min(num(values, 'peck'), num(values, 'clearance')) / 2;
@@ -251,7 +255,7 @@ export const latheThread: Operation = {
     writer.line(`G76 P${writer.number(num(values, 'pitch'))} Z${writer.number(num(values, 'z_end'))} I${writer.number(isOut ? -clear : clear)} J${writer.number(num(values, 'first_cut'))} K${writer.number(threadHeight(values))} R2 Q29.5 H${num(values, 'springs')} L0`);
     writer.line('G7');
     writer.forget();
-    // G76 ends at the end of the thread: out of a bore before anything else.
+    // G76 ends at the end of the thread, so the tool first leaves the bore.
     writer.rapid({ z: num(values, 'z_start') + num(values, 'lead_in') });
   },
 };
@@ -271,7 +275,7 @@ export const chamfer: Operation = {
   fields: cornerFields('chamfer'),
   write(writer, values) {
     const [edge, z, clear, feed] = [num(values, 'part_diameter'), num(values, 'z_start'), num(values, 'clearance'), num(values, 'feed_rev')];
-    // What the nose leaves beside a line of 45 degrees through the tip.
+    // Material that the nose leaves beside a line of 45 degrees through the tip.
     const total = num(values, 'chamfer') + (2 - Math.SQRT2) * num(values, 'nose');
     for (const c of cutsOf(total, num(values, 'cut'))) {
       writer.rapid({ z: z + clear });

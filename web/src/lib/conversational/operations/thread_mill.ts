@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Mills a thread in a hole or on a boss with a cutter of one tooth row: a helix with the pitch of the thread.
+// Mills a thread in a hole or on a boss with a single-row cutter: a helix with the pitch of the thread.
 import { choice, count, depthFields, directionField, position, size, toolFields } from '../fields';
 import { num, word, type Context, type Faults, type Operation, type Values } from '../types';
 import type { Writer } from '../writer';
 
 const isInternal = (values: Values): boolean => word(values, 'thread_side') === 'internal';
-/** Depth of a 60 degree thread for each unit of pitch: on a bolt, and in a nut. */
+/** Depth of a 60 degree thread per unit of pitch: on a bolt, and in a nut. */
 const SHARE = { external: 0.6134, internal: 0.5413 };
 
 export const threadMill: Operation = {
@@ -41,7 +41,7 @@ export const threadMill: Operation = {
 };
 
 interface Helix {
-  /** Of the tool's centre. */
+  /** Radius of the path of the tool's centre. */
   radius: number;
   from: number;
   to: number;
@@ -53,7 +53,7 @@ function write(writer: Writer, values: Values, context: Context): void {
   const [feed, clearance, tool] = [num(values, 'feed'), num(values, 'clearance'), num(values, 'diameter') / 2];
   const isIn = isInternal(values);
   const isCw = (word(values, 'direction') === 'climb') !== isIn;
-  // A right-hand thread rises anticlockwise.
+  // A right-hand thread rises counterclockwise.
   const isUp = isCw === (word(values, 'hand') === 'left');
   const bottom = top - num(values, 'depth');
   const turns = Math.ceil((num(values, 'depth') + pitch / 2) / pitch - 1e-9);
@@ -73,7 +73,7 @@ function write(writer: Writer, values: Values, context: Context): void {
     writer.feed({ z: helix.from }, feed);
     const edge = { x: x + radius, y };
     const lead = { x: x + (away + radius) / 2, y };
-    // Half a circle from the middle, or from outside: it meets the helix without a corner.
+    // Half a circle from the middle, or from outside, which joins the helix without a corner.
     const isLeadCw = isIn ? isCw : !isCw;
     writer.arc(edge, lead, isLeadCw, feed);
     writer.arc({ ...edge, z: helix.to }, { x, y }, isCw, feed, turns);
