@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// clarkeinv: three phases a, b, c from the vector (x, y), turned by `theta` [turns], and the common part h.
+// clarkeinv: three phases a, b, c from the vector (x, y), rotated by `theta` [turns], and the common part h.
 // Pins float. The inverse of clarke3.
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // div2: out = in0 / in1. A divisor nearer to zero than the parameter `deadband` counts as the deadband with
-// its sign (positive for 0), so that `out` stays finite. A deadband below 1e-12 counts as that.
+// its sign (positive for 0), so that `out` stays finite. A deadband below 1e-12 counts as 1e-12.
 #include <cmath>
 
 #include "components/arithmetic/divisor.hh"

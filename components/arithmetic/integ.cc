@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// integ: `out` grows by gain * in per second, held between `min` and `max`; `reset` (bit) sets it to 0. Other
+// integ: `out` grows by gain * in per second, limited to `min` and `max`; `reset` (bit) sets it to 0. Other
 // pins float; gain is 1 and the limits -1e20 and 1e20 at start. An input that is not a number adds nothing.
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // invert: out = 1 / in. An input nearer to zero than the parameter `deadband` counts as the deadband with its
-// sign (positive for 0), so that `out` stays finite. A deadband below 1e-12 counts as that.
+// sign (positive for 0), so that `out` stays finite. A deadband below 1e-12 counts as 1e-12.
 #include "components/arithmetic/divisor.hh"
 #include "hal/sdk/component.hh"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// lincurve: `out` follows `in` along straight lines between points, 2 to 16 an instance (`personality=`, 2
-// by default).
+// lincurve: `out` follows `in` along straight lines between points, 2 to 16 an instance (`personality=`, 2 by
+// default).
 //
-// The points are parameters x-val-NN and y-val-NN, x increasing. Left of the first and right of the last
-// point out stays at theirs. `out-io` is the same value as an I/O pin. All float.
+// The points are parameters x-val-NN and y-val-NN, x increasing. Left of the first point and right of the
+// last point `out` has the value of that point. `out-io` is the same value as an I/O pin. All float.
 #include <algorithm>
 
 #include "hal/sdk/component.hh"

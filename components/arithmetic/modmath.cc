@@ -4,7 +4,7 @@
 // The circle goes from `min-num` to `max-num` (s32 parameters, 0 and 15). While `actual` differs from
 // `desired` (s32), one of `up` and `down` (bit) is true: the direction with fewer steps, up when both are
 // equal. Without `wrap` (bit parameter, true) it is the direction of the difference. Equal: `on-target`
-// (bit). A number that is not on the circle, or an empty circle, makes no direction and not on-target.
+// (bit). A number that is not on the circle, or an empty circle, sets neither a direction nor on-target.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// offset: shifts a command and takes the shift out of the feedback. Pins float.
+// offset: adds an offset to a command and subtracts it from the feedback. Pins float.
 //
 // Function update-output: out = in + offset. Function update-feedback: fb-out = fb-in - offset.
 #include "hal/sdk/component.hh"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // wcomp: `out` (bit) is true while `in` is between `min` and `max`, `under` while it is at most min, `over`
-// while it is at least max. Other pins float. With max below min in may be under and over at once.
+// while it is at least max. Other pins float. With max below min, `under` and `over` may be true at once.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Counting of encoder signals without HAL. A fast part samples the phases; a slow part makes position and
-// velocity. They may run in two threads of which the fast one preempts the slow one: what crosses is one
-// 64-bit word per fact.
+// Counting of encoder signals without HAL. A fast part samples the phases; a slow part computes position and
+// velocity. They may run in two threads of which the fast one preempts the slow one, so they exchange only
+// complete 64-bit words.
 #pragma once
 
 #include <atomic>

@@ -3,12 +3,12 @@
 // number each. 0: `pwm`, for positive values. 1: `pwm` and `dir` (true for negative values). 2: `up` and
 // `down`.
 //
-// Function pwmgen.update: the duty cycle `curr-dc` is `value` / `scale` + `offset` (-1 to 1), its size held
-// between `min-dc` and `max-dc`; no pulse width when value is not a number. pwmgen.make-pulses, in a fast
-// thread, makes the pulses. `pwm-freq` [Hz]: at most half the rate of make-pulses and a whole part of it (it
-// is set to what it is); 0 makes pulse density modulation. `dither-pwm` (bit): pwm-freq stays, and the
-// average over many periods is exact. While `enable` (bit) is false all bits are low. Others float; scale,
-// offset, min-dc, max-dc, pwm-freq and dither-pwm are I/O pins.
+// Function pwmgen.update: the duty cycle `curr-dc` is `value` / `scale` + `offset` (-1 to 1), its magnitude
+// limited to `min-dc` and `max-dc`; no pulse width when value is not a number. pwmgen.make-pulses, in a fast
+// thread, makes the pulses. `pwm-freq` [Hz]: at most half the rate of make-pulses, and an integer fraction of
+// it (the pin is set to the actual frequency); 0 selects pulse density modulation. `dither-pwm` (bit):
+// pwm-freq is not changed, and the average over many periods is exact. While `enable` (bit) is false all bits
+// are low. Others float; scale, offset, min-dc, max-dc, pwm-freq and dither-pwm are I/O pins.
 #include <cmath>
 
 #include "components/generators/pwm_core.hh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// steptest: moves an axis to and fro, to find out what speed and acceleration it can reach.
+// steptest: moves an axis back and forth, to find the speed and acceleration that it can reach.
 //
 // While `run` (bit) is true `position-cmd` goes between `run-low` and `run-high`, `amplitude` away from
 // `run-start`, to one side only with `dir` (s32) 1 (up) or 2 (down), and waits `pause` (s32) [s] at each end

@@ -2,9 +2,9 @@
 // joyhandle: bends the curve of a joystick: `out` is scale * (a * in^power + b * in) + offset, with a and b
 // such that it starts with offset at the deadband and ends with scale + offset at 1.
 //
-// Below `deadband` (0 to 0.99) out is 0, above 1 it stays. Negative inputs give the negative of it. With
-// `inverse` (bit) the curve is turned round: steep first. All other parameters and pins are float; power (2
-// at start) counts as 1 when less.
+// Below `deadband` (0 to 0.99) out is 0, above 1 `out` remains constant. The curve is odd: a negative input
+// has the negative output. With `inverse` (bit) the curve is reversed and starts steep. All other parameters
+// and pins are float; power (2 at start) counts as 1 when less.
 #include <cmath>
 
 #include "components/limit/limit_core.hh"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// led_dim: a lamp as bright as it should look. `in` (float, 0 to 1) is the lightness that is wanted, `out`
-// (float, 0 to 1) the luminance that an eye takes for it, as a duty cycle for pwmgen. The formula is that of
-// the International Commission on Illumination of 1931, L* as a function of Y, turned around.
+// led_dim: sets the brightness of a lamp as an eye perceives it. `in` (float, 0 to 1) is the requested
+// lightness, `out` (float, 0 to 1) the luminance that an eye perceives as this lightness, as a duty cycle for
+// pwmgen. The formula is the inverse of L* as a function of Y, from the International Commission on
+// Illumination, 1931.
 #include <cmath>
 
 #include "components/limit/limit_core.hh"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// message: shows a text to the operator when a pin changes. `messages="One,Two"` gives the texts, one an
-// instance.
+// message: shows a text to the operator when a pin changes. `messages="One,Two"` lists the texts, one for
+// each instance.
 //
 // `trigger` (bit): its rising edge, or falling edge while the parameter `edge` (bit, true at start) is false,
-// shows the text; a rising edge of `force` (bit) shows it again while trigger is in that state. Texts go out
-// as errors of the realtime log, which user interfaces show.
+// shows the text; a rising edge of `force` (bit) shows it again while trigger is in that state. The texts are
+// sent as errors of the realtime log, which user interfaces show.
 #include "hal/sdk/component.hh"
 
 static char *messages[mw::sdk::MANY];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// pushmsg: texts of a machine's own, shown by pins. `emsg="One,Two"` gives the texts of errors, `wmsg`,
-// `imsg` and `dmsg` those of warnings, information and debugging: up to 16 of each.
+// pushmsg: shows texts of the machine when pins change. `emsg="One,Two"` lists the texts of errors, `wmsg`,
+// `imsg` and `dmsg` the texts of warnings, information and debugging: up to 16 of each.
 //
 // A rising edge of `error-NN`, `warning-NN`, `info-NN` or `debug-NN` (bit) sends the text of that number to
 // the realtime log; errors are shown by user interfaces. A pin without a text does nothing.

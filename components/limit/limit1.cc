@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// limit1: `out` is `in` held between `min` and `max`. All pins float; the limits start at -1e20 and 1e20.
-// An input that is not a number keeps the output where it is.
+// limit1: `out` is `in` limited to `min` and `max`. All pins float; the limits start at -1e20 and 1e20. While
+// the input is not a number, the output does not change.
 #include "components/limit/limit_core.hh"
 #include "hal/sdk/component.hh"
 

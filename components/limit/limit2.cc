@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// limit2: `out` follows `in`, held between `min` and `max`, and changes by at most `maxv` per second. `load`
+// limit2: `out` follows `in`, limited to `min` and `max`, and changes by at most `maxv` per second. `load`
 // (bit) sets out to in at once (within min and max). Other pins float; the limits start at -1e20 and 1e20.
-// An input that is not a number keeps the output where it is.
+// While the input is not a number, the output does not change.
 #include "components/limit/limit_core.hh"
 #include "hal/sdk/component.hh"
 

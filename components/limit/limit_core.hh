@@ -73,13 +73,13 @@ inline void Limit3::load(double value) noexcept {
     last_target = value;
 }
 
-/// Whether a period at `speed` ends so close to a place `remaining` away that any speed is allowed.
+/// Whether a period at `speed` ends so close to a target `remaining` away that any speed is allowed.
 inline bool Limit3::isAtEnd(double remaining, double speed, const Reach &reach) const noexcept {
     const double near = END_PART * std::fabs(out + speed * reach.dt);
     return remaining <= near || remaining <= END_UNITS * reach.step * reach.dt;
 }
 
-/// The speed that reaches a fixed place `distance` (not negative) ahead.
+/// The speed with which the output can still stop at a fixed target `distance` (not negative) ahead.
 inline double Limit3::part_at_end(double distance, const Reach &reach) noexcept {
     const double speed = stoppable_speed(distance, reach.accel, reach.dt);
     // The last part of the movement, less than the change of speed in one period, may be spread over more
@@ -109,7 +109,7 @@ inline double Limit3::hold_before(double limit, double side, double wanted,
                                   const Reach &reach) const noexcept {
     const double room = side * (limit - out);
     if (!(room >= 0.0)) {
-        return wanted;  // Outside because the limit has moved: the target leads back inside.
+        return wanted;  // The output is outside because the limit has moved; the target lies inside.
     }
     const double fastest = stoppable_speed(room, reach.accel, reach.dt);
     if (side * wanted <= fastest) {
@@ -124,8 +124,8 @@ inline double Limit3::hold_before(double limit, double side, double wanted,
 inline void Limit3::run(double target, const Bounds &bounds, double dt, unsigned smooth_steps) noexcept {
     const double low = bounds.min > bounds.max ? bounds.max : bounds.min;
     const double goal = between(target, low, bounds.max);
-    // A target that moves no faster than the output is allowed to is followed relative to its motion; a jump
-    // of the target counts as standing still.
+    // A target that moves no faster than the permitted speed of the output is followed relative to its
+    // motion; a target that jumps counts as standing still.
     const double accel = bounds.max_accel > 0.0 ? bounds.max_accel : 0.0;
     const Reach reach{dt, accel, accel * dt, bounds.max_vel > 0.0 ? bounds.max_vel : 0.0, smooth_steps};
     double goal_velocity = (goal - last_target) / dt;

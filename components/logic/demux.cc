@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// demux: makes true the one of the outputs `out-NN` (bit) whose number is selected; `personality=` gives the
-// number of outputs, up to 32 (the default).
+// demux: sets the selected one of the outputs `out-NN` (bit) to true; `personality=` gives the number of
+// outputs, up to 32 (the default).
 //
 // The number is `sel-u32` (u32) plus the binary number of sel-bit-00 to sel-bit-04 (bit); one that is too
 // large selects the last output. With the parameter `bargraph` (bit) as many outputs as the number are true.

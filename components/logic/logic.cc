@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // logic: and, or, xor, nand and nor of up to 16 inputs.
 //
-// `personality=` gives one number an instance: the number of inputs (low byte) plus 0x100 for output `and`,
-// 0x200 `or`, 0x400 `xor` (an odd number of inputs is true), 0x800 `nand`, 0x1000 `nor`. Pins: in-00, in-01,
-// ... and those outputs.
+// `personality=` lists one number for each instance: the number of inputs (low byte) plus 0x100 for output
+// `and`, 0x200 `or`, 0x400 `xor` (an odd number of inputs is true), 0x800 `nand`, 0x1000 `nor`. Pins: in-00,
+// in-01, ... and the selected outputs.
 #include "hal/sdk/component.hh"
 
 static int personality[mw::sdk::MANY];

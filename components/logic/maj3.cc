@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// maj3: `out` is what at least two of `in1`, `in2`, `in3` are, inverted while the parameter `invert` is true.
+// maj3: `out` is the value of at least two of `in1`, `in2`, `in3`, inverted while the parameter `invert` is
+// true.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

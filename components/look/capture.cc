@@ -19,7 +19,7 @@ namespace {
 
 constexpr int MOST_WORDS = 1 << 24;
 
-/// The word at a place in HAL memory.
+/// The word at an address in HAL memory.
 std::uint64_t word_at(const char *place, std::uint32_t type) noexcept {
     switch (type) {
     case HAL_BIT: return *reinterpret_cast<const volatile bool *>(place) ? 1U : 0U;

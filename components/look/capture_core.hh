@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the module capture does in a cycle, without HAL.
+// The work of the module capture in one cycle, without HAL.
 #pragma once
 
 #include "hal/tools/view/capture_block.hh"

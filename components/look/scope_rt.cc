@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// scope_rt: the place of halscope's sampling function, so that HAL files which load it and add `scope.sample`
-// to a thread work as they are. It records nothing: the window of LinuxCNC 2.9 that reads it looks into the
-// memory of the HAL that it was made for. It reports this when it is loaded; `capture` records pins
-// (`millwright hal capture`).
+// scope_rt: replaces halscope's sampling function, so that HAL files which load it and add `scope.sample` to
+// a thread work unchanged. It records nothing, because the halscope window of LinuxCNC 2.9 reads the memory
+// of LinuxCNC's own HAL. It reports this when it is loaded; `capture` records pins (`millwright hal
+// capture`).
 #include "hal/sdk/component.hh"
 
 static int num_samples = 16000;

@@ -4,10 +4,10 @@
 // `kcounts` (s32) is the offset times `k` (u32, 10000 at start and for 0), `kreciprocal` 1 / k. With the
 // radius R = `radius-ref` (1), F = `rfraction` (0.1) and the angle x = `angle` - `start-angle` [degrees],
 // `fnum` (s32) chooses: 0 the distance of a polygon of `fmult` (6, at least 3) sides around the circle
-// (1+F)R, less R; 1 the same for the polygon inside that circle; 2 a sinus from 0 to FR, fmult times a turn;
-// 3 the same as a square wave. Other numbers count as 0. `is-on` and `enable-in` (bit) start it, is-on false
-// stops it at once; else `enable-out` stays true until `active` (bit) shows that the offset is removed.
-// `clear`, `is-off` (bit), `eoffset-dbg`, `state-dbg` (u32).
+// (1+F)R, less R; 1 the same for the polygon inside that circle; 2 a sinus from 0 to FR, fmult times per
+// revolution; 3 the same as a square wave. Other numbers count as 0. `is-on` and `enable-in` (bit) start it,
+// is-on false stops it at once; else `enable-out` stays true until `active` (bit) shows that the offset is
+// removed. `clear`, `is-off` (bit), `eoffset-dbg`, `state-dbg` (u32).
 #include <cmath>
 #include <numbers>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// feedcomp: `out` is `in` times `vel` / `feed` while `enable` (bit) is true, else in; as for a laser's power.
-// Pins float; feed is a parameter. A feed of 0 gives 0.
+// feedcomp: `out` is `in` times `vel` / `feed` while `enable` (bit) is true, otherwise `in`, for example for
+// the power of a laser. Pins float; feed is a parameter. A feed of 0 gives 0.
 #include <cmath>
 
 #include "hal/sdk/component.hh"

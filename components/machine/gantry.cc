@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// gantry: several motors move one axis and home to separate switches; `personality=` gives their number,
-// up to 7.
+// gantry: several motors move one axis and home to separate switches; `personality=` gives their number, up
+// to 7.
 //
 // Function gantry.N.read: `home` (bit) is true when all `joint.NN.home` (bit) are, `limit` when any is;
 // `position-fb` is joint.NN.pos-fb + joint.NN.offset of one joint: the one that reached its switch last.
 // Function gantry.N.write: `joint.NN.pos-cmd` is `position-cmd` less the joint's offset. While position-cmd
 // moves in the direction of `search-vel` and some switches are made and some not, the joints at their switch
-// do not move and their offset follows. Positions [machine units] are float. A command that is not a number
-// is not passed on.
+// do not move and their offset changes instead. Positions [machine units] are float. A command that is not a
+// number is not passed on.
 #include <cmath>
 
 #include "hal/sdk/component.hh"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // gearchange: the speed for a spindle with two gears. `sel` (bit) chooses the second.
 //
-// First gear: `speed-out` is `speed-in` held between the parameters `min1` and `max1` (0 and 100000). Second:
-// speed-in held between `min2` and `max2`, divided by `scale2` (how many times faster it turns; less than 1
-// counts as 1 and is set so). The limits are for the size of the speed; its sign stays. `dir-out` (bit) is
+// First gear: `speed-out` is `speed-in` limited to the parameters `min1` and `max1` (0 and 100000). Second
+// gear: speed-in limited to `min2` and `max2`, divided by `scale2` (the ratio of the two gears; a value below
+// 1 is set to 1). The limits apply to the magnitude of the speed; its sign is kept. `dir-out` (bit) is
 // `dir-in`, inverted in second gear while the parameter `reverse` (bit) is true. Other pins float.
 #include <cmath>
 

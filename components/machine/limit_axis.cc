@@ -3,11 +3,11 @@
 // ranges, 1 to 10 (default 2).
 //
 // `fb` is the position that chooses; range NN is the first one with `enable-NN` (bit, true at start) for
-// which it is between `min-range-NN` and `max-range-NN`, both included. `min-output` and `max-output` are
+// which `fb` is between `min-range-NN` and `max-range-NN`, both included. `min-output` and `max-output` are
 // then `min-limit-NN` and `max-limit-NN`, and `current-range` (u32) is NN. With `sticky-NN` (bit) the range
-// is kept while fb is in it, though an earlier one matches too. When no range matches, or fb is not
-// a number, `error-no-range` (bit) is true and the limits stay, as they do when the chosen ones are not
-// usable (max below min). Float where not said.
+// is kept while fb is in it, even when an earlier range matches too. When no range matches, or fb is not a
+// number, `error-no-range` (bit) is true and the limits do not change; neither do they when the limits of the
+// range are invalid (max below min). All other pins are float.
 #include "hal/sdk/component.hh"
 
 MW_PERSONALITY("ranges of each instance");

@@ -2,10 +2,11 @@
 // spindle: ramps for a spindle drive with forward and reverse inputs, up to 16 gears (`numgears=`, 1 by
 // default).
 //
-// The speed follows `commanded-speed` [rpm], its size held between the gear's `min` and `max`, with at most
-// `accel` and `decel` [rpm/s]: with `simulate-encoder` (bit) in ramps; else `output` is at most that many rpm
-// [rpm] ahead of `actual-speed` [turns/s]. While `enable` (bit) is false the speed asked for is 0. The manual
-// page describes all pins. A command that is not a number counts as 0.
+// The speed follows `commanded-speed` [rpm], its magnitude limited to the gear's `min` and `max`, with at
+// most `accel` and `decel` [rpm/s]: with `simulate-encoder` (bit) the output is a ramp; otherwise `output`
+// [rpm] leads `actual-speed` [turns/s] by at most the change of speed in one period. While `enable` (bit) is
+// false the requested speed is 0. The manual page describes all pins. A command that is not a number counts
+// as 0.
 #include <cmath>
 
 #include "components/limit/limit_core.hh"

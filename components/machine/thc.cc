@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// thc: torch height control with the arc's voltage: adds a correction to the Z axis of a plasma cutter.
+// thc: torch height control by the arc voltage: adds a correction to the Z axis of a plasma cutter.
 //
 // `volts` is (`encoder-vel` - `scale-offset`) * `vel-scale`. While `enable`, `torch-on` and `arc-ok` (bit)
 // are true and `vel-status` (bit) is - `current-vel` at least `requested-vel` less `velocity-tol` percent -,
-// the torch goes up by `correction-vel` a period when volts are below `volts-requested` by more than
-// `voltage-tol`, down when above. When the torch is off the correction is removed while Z rises; while
-// enable is false, by correction-vel a period. `z-pos-out` = `z-pos-in` + `offset-value`; `z-fb-out` =
-// z-pos-in. Pins `vel-tol` (not used) and others float; vel-scale, scale-offset, velocity-tol, voltage-tol,
-// correction-vel are parameters.
+// the torch moves up by `correction-vel` a period when `volts` is below `volts-requested` by more than
+// `voltage-tol`, and down when `volts` is above by more. When the torch is off the correction is removed
+// while Z rises; while enable is false, by correction-vel a period. `z-pos-out` = `z-pos-in` +
+// `offset-value`; `z-fb-out` = z-pos-in. Pins `vel-tol` (not used) and others float; vel-scale, scale-offset,
+// velocity-tol, voltage-tol, correction-vel are parameters.
 #include "components/machine/torch.hh"
 #include "hal/sdk/component.hh"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Represents motmod's built-in homing (src/motion/homing), which existing start files load as a module of its
-// own; and says whether the module that is to take its place is one.
+// Represents motmod's built-in homing (src/motion/homing), which existing start files load as a separate
+// module, and reports whether a module loaded instead of it is a homing module.
 #include <string.h>
 
 #include "hal/include/hal.h"

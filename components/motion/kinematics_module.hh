@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The functions of kinematics.h over one of our models (kinematics/kinematics.hh), or over anything that has
-// forward and inverse as a model has.
+// The functions of kinematics.h for one of our models (kinematics/kinematics.hh), or for any class with the
+// functions forward and inverse of a model.
 #pragma once
 
 #include <algorithm>
@@ -122,7 +122,7 @@ unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcep
 /// functions at the same time as the servo thread.
 #define MW_KINEMATICS_PURE MW_KINEMATICS_PURE_IF(true)
 
-/// The same when this is only known after loading.
+/// As MW_KINEMATICS_PURE, for a property that is known only after loading.
 #define MW_KINEMATICS_PURE_IF(condition)                                                                     \
     extern "C" KINEMATICS_TYPE kinematicsType(void) {                                                        \
         return KINEMATICS_BOTH;                                                                              \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Modules of a rotary table under a head whose axis leans (kinematics/nutating_head.hh): type 0 is identity,
-// type 1 programs the tip of the tool on the work, type 2 a tilted plane across the tool.
+// Modules of a rotary table under a head with an inclined axis (kinematics/nutating_head.hh): type 0 is
+// identity, type 1 programs the tip of the tool on the work, type 2 a tilted plane across the tool.
 #pragma once
 
 #include "components/motion/switchable.hh"
@@ -8,7 +8,7 @@
 
 namespace mw::components {
 
-/// `Head` gives the axis about which the table turns. There is one for each module; the pins use `name`.
+/// `Head` gives the axis about which the table turns. Each module has its own; the pins use `name`.
 template <class Head>
 class LeaningHead {
   public:
@@ -29,7 +29,7 @@ class LeaningHead {
     }
 
   private:
-    /// The same machine in tool coordinates.
+    /// The same machine in the coordinates of the tool.
     struct InPlane {
         const PinnedModel<Head> &pinned;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Modules of several types of kinematics, switched by motion.switchkins-type: models, identity, where each
-// joint is an axis, and a user's own. Type 0 is the model, type 1 identity, type 2 the user's; with
-// sparm=identityfirst identity is type 0 and the model type 1. coordinates= are the letters of the joints.
+// Modules of several types of kinematics, switched by motion.switchkins-type: models, identity (each joint is
+// an axis), and kinematics of the user. Type 0 is the model, type 1 identity, type 2 the kinematics of the
+// user; with sparm=identityfirst identity is type 0 and the model type 1. coordinates= are the letters of the
+// joints.
 #pragma once
 
 #include <array>

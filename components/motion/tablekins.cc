@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Kinematics of five-axis machines with a tilting rotary table (kinematics/rotary_table.hh): joints 0 to 4 =
-// X Y Z A C. tilt_y=, tilt_z=: where the axis A passes the axis C, from the origin [machine units].
+// X Y Z A C. tilt_y=, tilt_z=: the position where the axis A passes the axis C, from the origin [machine
+// units].
 #include <errno.h>
 #include <stdlib.h>
 

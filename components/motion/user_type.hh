@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The type of a switchable module that a user's own component gives: it is loaded before the module and
-// exports the three functions userkKinematics* of kinematics.h. Without one joints are axes.
+// The type of a switchable module that is implemented by a component of the user. This component is loaded
+// before the module and exports the three functions userkKinematics* of kinematics.h. Without it, joints are
+// axes.
 #pragma once
 
 #include "components/motion/kinematics_module.hh"
@@ -97,7 +98,8 @@ class UserType final : public TypePart {
     decltype(&userkKinematicsSetup) setup_ = nullptr;
     decltype(&userkKinematicsForward) forward_ = nullptr;
     decltype(&userkKinematicsInverse) inverse_ = nullptr;
-    // For a user whose functions keep state in these; such a module is called only by the servo thread.
+    // For a component whose functions keep state in these flags; such a module is called only by the servo
+    // thread.
     mutable KINEMATICS_FORWARD_FLAGS forward_flags_ = 0;
     mutable KINEMATICS_INVERSE_FLAGS inverse_flags_ = 0;
     bool pure_ = false;

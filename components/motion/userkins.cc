@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// userkins: joints 0 to 2 are the axes X Y Z. What machines run on whose own kinematics of this name is not
-// built yet; examples/kinematics/userkins.comp is the one to begin with. `userkins.0.fpin` (s32) counts runs
-// of the function userkins.0.fdemo.
+// userkins: joints 0 to 2 are the axes X Y Z. It serves until the user has built kinematics with this name;
+// examples/kinematics/userkins.comp is the template. `userkins.0.fpin` (s32) counts runs of the function
+// userkins.0.fdemo.
 #include "components/motion/kinematics_module.hh"
 #include "hal/sdk/component.hh"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of a rotary table A under a head whose axis B leans.
+// Kinematics of a rotary table A under a head with an inclined axis B.
 #include "components/motion/leaning_head.hh"
 
 namespace {

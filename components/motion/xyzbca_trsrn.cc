@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of a rotary table B under a head whose axis A leans.
+// Kinematics of a rotary table B under a head with an inclined axis A.
 #include "components/motion/leaning_head.hh"
 
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What multiplexers and demultiplexers of any type and size share: their config= and copying between types.
+// Common code of multiplexers and demultiplexers of any type and size: their config= and copying between
+// types.
 #pragma once
 
 #include "components/conv/conv_core.hh"

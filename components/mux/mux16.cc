@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// mux16: `out-f` (float) follows the one of `in00` to `in15` (float) whose number `sel3` to `sel0` (bit)
-// make; `out-s` (s32) is its whole part, the nearest possible when it does not fit.
+// mux16: `out-f` (float) follows the input of `in00` to `in15` (float) that `sel3` to `sel0` (bit) select;
+// `out-s` (s32) is its whole part, the nearest possible when it does not fit.
 //
 // `use-graycode` (bit): the number is in Gray code. `suppress-no-input` (bit): no selection at all changes
 // nothing. A selection counts when it has held still for `debounce-time` [s]; until then the outputs keep

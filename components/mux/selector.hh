@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Which input a multiplexer passes on: a number that must hold still for a while before it counts.
+// Selects the input of a multiplexer from a number that must be steady for a time before it counts.
 // Realtime-safe.
 #pragma once
 

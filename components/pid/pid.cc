@@ -193,7 +193,7 @@ void Pid::update(long period_ns) noexcept {
     pid::Inputs in;
     const double wanted = command;
     const double measured = feedback;
-    // A broken sensor must not affect the motor, nor stay in the integrator.
+    // The values of a broken sensor must not affect the motor or remain in the integrator.
     const double command_derivative = command_deriv.get();
     const double feedback_derivative = feedback_deriv.get();
     const bool sane = std::isfinite(wanted) && std::isfinite(measured) && std::isfinite(command_derivative) &&

@@ -84,7 +84,7 @@ class Controller {
     std::int32_t saturated_count_ = 0;
 };
 
-/// Finds gains with a relay instead of the controller (Astrom and Hagglund 1984). The loop goes into a limit
+/// Finds gains with a relay instead of the controller (Astrom and Hagglund 1984). The loop enters a limit
 /// cycle; its amplitude and period give the ultimate gain, and the gains follow from the rules of Ziegler and
 /// Nichols.
 class Tuner {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The power side of a drive: it takes a while to switch on, none to switch off, and a fault takes its power
-// away and stays until it is reset while the drive is off. Realtime-safe.
+// The power stage of a drive: it switches on after a delay and off at once. A fault removes the power and
+// remains until it is reset while the drive is off. Realtime-safe.
 #pragma once
 
 namespace mw::plants {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A motor with its load under a servo drive that follows positions: inertia, friction, a bounded torque, and
-// play between motor and load. Realtime-safe.
+// backlash between motor and load. Realtime-safe.
 #pragma once
 
 #include <algorithm>

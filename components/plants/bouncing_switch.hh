@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A mechanical switch on an axis: it closes on one side of a place, opens a hysteresis back, and its contact
-// bounces for a while after each. Realtime-safe.
+// A mechanical switch on an axis: it closes on one side of a position, opens when the axis has moved back by
+// the hysteresis, and its contact bounces for a time after each change. Realtime-safe.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace mw::plants {
 struct SwitchSettings {
     double at = 0;          ///< closed at this position and past it
     bool above = true;      ///< past means above; otherwise below
-    double width = 0;       ///< it opens again at this distance; 0: it stays closed
-    double hysteresis = 0;  ///< it opens this far before the place at which it closes
+    double width = 0;       ///< it opens again at this distance; 0: it remains closed
+    double hysteresis = 0;  ///< it opens at this distance before its closing position
     double bounce_s = 0;    ///< time after a change during which the contact is uncertain
 };
 

@@ -2,7 +2,8 @@
 // A simulated spindle by its torques: a frequency inverter that reads its command at intervals and ramps its
 // frequency, an asynchronous motor with slip and limits of torque and power, inertia, friction and cutting
 // load; an encoder with unevenly placed lines that is read at uneven times. It shares no code and no
-// assumption with what follows it. Torques are given as the angular acceleration that they cause.
+// assumptions with the controller that follows it. Torques are expressed as the angular acceleration that
+// they cause.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +21,7 @@ struct DrivenSpindleTraits {
     double full_power_rps = 25;  ///< the torque falls with 1/speed above
     double friction = 0.3;       ///< per speed [1/s]
     int counts = 4096;           ///< of the encoder per revolution
-    double uneven = 0.1;         ///< error of the place of a line, as a part of their distance
+    double uneven = 0.1;         ///< error of the position of a line, as a fraction of their distance
     double eccentric = 2e-5;     ///< error over one revolution [rev]
     double jitter_s = 10e-6;     ///< of the time of reading
 };
@@ -41,7 +42,7 @@ class DrivenSpindle {
     /// The true angle [rev], its speed.
     double angle() const noexcept { return angle_; }
     double speed() const noexcept { return speed_; }
-    /// What the encoder shows [rev].
+    /// The position that the encoder shows [rev].
     double shown() const noexcept { return static_cast<double>(count_) / traits_.counts; }
 
   private:

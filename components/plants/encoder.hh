@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A position encoder with its counter: resolution, index marks at which the counter can be set to zero, and
-// the faults of such a thing: counts that stop, counts that jump. Realtime-safe.
+// the faults of an encoder: counts that stop and counts that jump. Realtime-safe.
 #pragma once
 
 #include <cmath>

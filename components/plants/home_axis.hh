@@ -37,7 +37,7 @@ class HomeAxis {
     Faults faults;
 
     /// One period of `dt` [s] with the command in encoder units; a command that is not a number is ignored
-    /// and the motor stays where it is. `index_wanted`: the pin index-enable is TRUE.
+    /// and the motor does not move. `index_wanted`: the pin index-enable is TRUE.
     void step(double command, bool index_wanted, double dt) {
         time_ += dt;
         index_enabled_ = index_wanted && (index_enabled_ || !was_wanted_);

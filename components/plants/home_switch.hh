@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A simulated home switch with hysteresis, and an index pulse that comes a while after it is asked for.
+// A simulated home switch with hysteresis, and an index pulse that follows some time after the request.
 // Realtime-safe.
 #pragma once
 

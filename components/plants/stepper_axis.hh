@@ -10,7 +10,7 @@
 namespace mw::plants {
 
 struct StepperSettings {
-    double units_per_step = 0.005;    ///< of the table; negative: the other way round
+    double units_per_step = 0.005;    ///< of the table; a negative value reverses the direction
     double backlash = 0;              ///< [unit]
     double peak_acceleration = 5000;  ///< pull-out torque at standstill, divided by inertia [unit/s^2]
     double fastest = 500;             ///< speed at which the pull-out torque is zero [unit/s]

@@ -65,7 +65,7 @@ void Cutting::wait_for_arc() noexcept {
     }
 }
 
-/// A spot: the torch is switched off after its time, which starts with the voltage.
+/// A spot cut: the torch is switched off after a time, which starts when the arc has its voltage.
 void Cutting::spot() noexcept {
     if (out_.arc_voltage_out >= in_.spotting_threshold) {
         if (spot_.runOut(period_s_)) {
@@ -86,7 +86,7 @@ void Cutting::pierce() noexcept {
     state_ = is_puddle ? State::PUDDLE_JUMP : State::CUT_HEIGHT;
 }
 
-/// Over the puddle: this part of the path starts at its own height.
+/// Over the puddle, this part of the path starts at a separate height.
 void Cutting::puddle_jump() noexcept {
     out_.feed_hold = false;
     const double percent = in_.puddle_jump_height > 0.0 ? std::min(in_.puddle_jump_height, 200.0) : 100.0;
@@ -120,7 +120,8 @@ void Cutting::pause_at_end() noexcept {
 void Cutting::safe_height() noexcept {
     out_.cornerlock_is_locked = false;
     const double highest = in_.axis_z_max_limit - std::max(0, in_.max_offset) * in_.units_per_mm - zero_mu_;
-    // A torch that was raised keeps that distance; a torch that was lowered goes to the full safe height.
+    // A torch that was raised keeps its raised distance; a torch that was lowered moves to the full safe
+    // height.
     const double raised = std::max(0, thc_shift_) * out_.offset_scale;
     const double wanted = in_.safe_height > 0.0 ? std::min(in_.safe_height + raised, highest) : highest;
     const std::int32_t target = has_zero_ ? height_counts(wanted) - thc_shift_ : 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The cut and its height: the voltage to hold, what locks the height (corners, gaps), and the PID that holds
-// it.
+// The cut and its height: the target voltage, the conditions that lock the height (corners, gaps), and the
+// PID controller that holds it.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ void HeightControl::set_thc_pins() noexcept {
     const bool ready = state_ == State::CUT_BY_SWITCHES || has_target_;
     out_.thc_active = out_.thc_enabled && is_cut && ready && out_.torch_on && !out_.cornerlock_is_locked &&
                       !out_.voidlock_is_locked;
-    // Voltages before the cut also count when the control starts as soon as they are steady.
+    // Voltages before the cut are also counted if the control starts as soon as the voltage is steady.
     if (!out_.torch_on) {
         sample_count_ = 0;
         sum_ = 0.0;
@@ -89,8 +89,8 @@ void HeightControl::cut_by_voltage() noexcept {
     hold_voltage();
 }
 
-/// Finds the voltage to hold: the one for the material, or the one measured when it is steady or the delay is
-/// over.
+/// Finds the target voltage: the value for the material, or the measured value when it is steady or the delay
+/// is over.
 void HeightControl::wait_for_target() noexcept {
     constexpr double FULL_SPEED = 0.999;
     if (!isAtSpeed(FULL_SPEED)) {

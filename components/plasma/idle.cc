@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Idle: what may start, and what must be true first.
+// The idle state: the actions that may start, and their conditions.
 #include <cmath>
 
 #include "components/plasma/plasma_core.hh"
@@ -33,7 +33,7 @@ void Idle::idle() noexcept {
     out_.feed_hold = out_.feed_hold && (in_.cutting_start || in_.spotting_start);
 }
 
-/// Close to the last cut, or to the last probe, the height found there is accurate enough.
+/// Close to the last cut, or to the last probe, the height measured there is accurate enough.
 bool Idle::isNearLastCut() const noexcept {
     const double way = std::hypot(in_.axis_x_position - last_cut_x_, in_.axis_y_position - last_cut_y_);
     return in_.skip_ihs_distance > 0.0 && probed_ && way < in_.skip_ihs_distance;

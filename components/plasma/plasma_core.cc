@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One cycle of the plasma controller: the order of things, moves by counts, times of the job.
+// One cycle of the plasma controller: the order of its steps, moves by counts, times of the job.
 #include "components/plasma/plasma_core.hh"
 
 #include <cmath>

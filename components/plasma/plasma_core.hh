@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The plasma controller without HAL: one call of step() a servo period. It finds the material, starts the
-// arc, pierces, cuts while it holds the height by the arc voltage, retracts, and goes back when something is
-// wrong. Z (and X, Y for consumables and recovery) moves by offset counts that motion adds to its own
-// position.
+// arc, pierces, cuts while it holds the height by the arc voltage, retracts, and moves back to a safe
+// position after a fault. Z (and X, Y for consumables and recovery) moves by offset counts that motion adds
+// to its own position.
 //
 // The states and their numbers are those of plasmac (state-out). Each part knows those above it.
 #pragma once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the plasma controller reads and says in one cycle. Names and meaning are those of the pins of
-// plasmac(9); plasma_pins.hh ties the two. Lengths and rates are in machine units (mu), counts in
+// The inputs and outputs of the plasma controller in one cycle. Names and meanings are those of the pins of
+// plasmac(9); plasma_pins.hh connects them. Lengths and rates are in machine units (mu), counts in
 // offset_scale of those.
 #pragma once
 

@@ -7,7 +7,7 @@
 
 namespace mw::plasma {
 
-/// No measured value or setting at a table is larger; products of such numbers stay finite.
+/// No measured value or setting of a plasma table is larger; products of such numbers stay finite.
 inline constexpr double MOST_VALUE = 1.0e9;
 
 /// Copies a pin into a member. A value that is not such a number is reported, and the member keeps its old

@@ -6,7 +6,7 @@
 
 namespace mw::plasma {
 
-/// Counts per cycle at this rate; 0 for a rate that is negative.
+/// Counts per cycle at this rate; 0 for a negative rate.
 std::int32_t Shared::steps_of(double rate_mu_min) const noexcept {
     return to_counts(steps_exactly(rate_mu_min));
 }

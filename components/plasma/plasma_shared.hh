@@ -61,7 +61,8 @@ enum class Fault {
     SENSOR_BEFORE_TEST,
 };
 
-/// Counts down. The remainder of the last period counts, as it does in the times that this replaces.
+/// Counts down. The remainder of the last period counts too, as in the counters of LinuxCNC that this
+/// replaces.
 struct Countdown {
     double left_s = 0.0;
     /// True when the time is over; otherwise one period passes.
@@ -116,7 +117,7 @@ class Shared {
     bool is_probe_test_ = false, spotting_ = false;
     bool was_ohmic_ = false;
     bool probed_ = false, has_zero_ = false;
-    double zero_mu_ = 0.0;          // Z at the surface of the material
+    double zero_mu_ = 0.0;          // Z position of the surface of the material
     std::int32_t zero_counts_ = 0;  // offset counts at that height
     std::int32_t thc_shift_ = 0;    // distance that the height control moved the torch from the cut height
 };

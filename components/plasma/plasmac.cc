@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// plasmac: the controller of a plasma table as a HAL component. The work is plasma_core.hh; here are pins
-// (plasma_pins.hh), the function, and the messages for the operator.
+// plasmac: the controller of a plasma table as a HAL component. The algorithm is in plasma_core.hh; this file
+// has the pins (plasma_pins.hh), the function, and the messages for the operator.
 #include "components/plasma/plasma_core.hh"
 #include "components/plasma/plasma_pins.hh"
 

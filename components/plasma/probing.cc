@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Finding the material: down until a sensor closes, up until it opens.
+// Finds the material: moves down until a sensor closes, then up until it opens.
 #include "components/plasma/plasma_core.hh"
 
 namespace mw::plasma {
@@ -97,8 +97,8 @@ void Probing::probe_down() noexcept {
     add_z(-steps_of(in_.probe_feed_rate));
 }
 
-/// Moves up slowly until the sensor opens. Contact before the start of probing is not a height: probing
-/// starts there.
+/// Moves up slowly until the sensor opens. A sensor that was closed before the probing measures no height:
+/// probing starts there.
 void Probing::probe_up() noexcept {
     const bool closed = in_.float_switch || (in_.ohmic_probe && in_.ohmic_probe_enable);
     if (!closed) {
@@ -114,7 +114,7 @@ void Probing::probe_up() noexcept {
     add_z(static_cast<double>(in_.resolution) * (early_ ? EARLY_SPEED : std::max(0, in_.probe_final_speed)));
 }
 
-/// The position where the sensor opened, and its travel, give the zero of all heights.
+/// The position at which the sensor opened, and the travel of the sensor, determine the zero of all heights.
 void Probing::zero_height() noexcept {
     const double way = found_by_contact_ ? in_.ohmic_probe_offset : in_.float_switch_travel;
     if (!zeroed_) {

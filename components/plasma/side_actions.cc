@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is no cut: a pulse of the torch, tests of the probes, the scribe, moving along the path while paused.
+// Actions other than a cut: a pulse of the torch, tests of the probes, the scribe, movement along the path
+// while paused.
 #include "components/plasma/plasma_core.hh"
 
 namespace mw::plasma {
@@ -33,7 +34,8 @@ void SideActions::ohmic_test() noexcept {
     }
 }
 
-/// Waits at the pierce height, or where the test failed, until the request is removed; then moves up.
+/// Waits at the pierce height, or at the height at which the test failed, until the request is removed; then
+/// moves up.
 void SideActions::probe_test() noexcept {
     out_.z_offset_enable = true;
     if (in_.probe_test) {
@@ -46,7 +48,7 @@ void SideActions::probe_test() noexcept {
     }
 }
 
-/// Lowers the scribe, switches it on, then the path starts; while paused it does neither.
+/// Lowers the scribe and switches it on, then starts the path; does neither while paused.
 void SideActions::scribe() noexcept {
     if (!in_.scribe_start || in_.program_is_idle) {
         out_.scribe_arm = out_.scribe_on = false;

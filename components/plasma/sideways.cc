@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// X and Y beside the path: to where consumables are changed, and off the cut to start again.
+// Offsets of X and Y from the path: to the position for changing consumables, and off the cut before a
+// restart.
 #include <cmath>
 
 #include "components/plasma/plasma_core.hh"
@@ -86,7 +87,7 @@ void Sideways::recovery_out() noexcept {
     is_at_target_ = out_.x_offset_counts == x && out_.y_offset_counts == y;
 }
 
-/// One step per cycle: requested, moving, arrived.
+/// The steps follow each other, one per cycle: requested, moving, arrived.
 void Sideways::follow_laser() noexcept {
     if (in_.laser_recovery_start <= 0) {
         return;

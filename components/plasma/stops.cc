@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What ends a cut before its end: the operator, a sensor, a fault, the machine.
+// The reasons to end a cut early: the operator, a sensor, a fault, the machine.
 #include "components/plasma/plasma_core.hh"
 
 namespace mw::plasma {
@@ -125,7 +125,7 @@ bool Stops::isTorchAllowed() noexcept {
     return in_.torch_off || !torch_taken_ || isArcIgnored() || in_.mesh_enable;
 }
 
-/// Runs before the state does.
+/// Runs before the function of the state.
 void Stops::watch_stops() noexcept {
     ended_now_ = false;
     if (pending_ != Fault::NONE) {

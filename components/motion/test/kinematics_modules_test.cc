@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Modules of kinematics as HAL sees them: pins with what they start at, as LinuxCNC's modules show them; a
-// manual page that names every one; a motion controller that loads over them.
+// Modules of kinematics as HAL sees them: pins with the initial values of LinuxCNC's modules, a manual page
+// that names every pin, and a motion controller that loads on top of them.
 #include <cctype>
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The pin tables of the motion controller, the running module and the manual page say the same.
+// The pin tables of the motion controller, of the running module and of the manual page agree.
 #include <algorithm>
 #include <map>
 #include <set>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Plants behave as the real devices, by the laws of mechanics and not by what motion expects.
+// Plants behave as the real devices, by the laws of mechanics and not by the expectations of motion.
 #include <cmath>
 #include <limits>
 #include <vector>

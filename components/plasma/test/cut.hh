@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A table ready to cut, and what tests ask of it: run until a state, start, end, pause.
+// A table that is ready to cut, with the functions that tests use: run until a state, start, end, pause.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 namespace mw::plasma::test {
 
-/// Material at 2 mm, torch at 90, 100 V; fast enough for a cut of a few hundred cycles.
+/// The material is at 2 mm, the torch at 90 mm, the voltage 100 V; a cut needs only a few hundred cycles.
 struct Cut : Table {
     Cut() {
         in.units_per_mm = 1.0;

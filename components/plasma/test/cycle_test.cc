@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The cutting cycle from probing to the safe height, and what is started beside it.
+// The cutting cycle from probing to the safe height, and the other actions.
 #include "components/plasma/test/cut.hh"
 
 namespace mw::plasma::test {

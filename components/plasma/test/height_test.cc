@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The height control: the voltage it holds, its limits, and what locks it.
+// The height control: the voltage that it holds, its limits, and the conditions that lock it.
 #include "components/plasma/test/cut.hh"
 
 namespace mw::plasma::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// plasmac_history: what our controller does with a history of inputs, as text, for script/compare plasmac.
+// plasmac_history: prints the outputs of our controller for a history of inputs, for script/compare plasmac.
 //
 //     plasmac_history SCRIPT INPUTS OUTPUTS
 //

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every fault: torch off, up, and the program paused. Invalid inputs have no effect.
+// Every fault switches the torch off, moves it up and pauses the program. Invalid inputs have no effect.
 #include <cmath>
 #include <limits>
 #include <random>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A plasma table for tests: Z goes where the offset counts say one cycle later, the float switch closes at
-// the material, the arc has its voltage while the torch is on. Pins are reached by name.
+// A plasma table for tests: Z reaches the position of the offset counts one cycle later, the float switch
+// closes at the material, the arc has its voltage while the torch is on. Pins are reached by name.
 #pragma once
 
 #include <cmath>
@@ -42,7 +42,7 @@ struct Table {
     Core core;
     double material_mu = 2.0, z0_mu = 90.0, volts = 100.0, ohmic_mu = -1e9;
     bool has_float = true, has_volts = true, has_sideways = true;
-    bool has_program = false;  ///< halui answers program-pause and program-resume
+    bool has_program = false;  ///< halui confirms program-pause and program-resume
 
     Table() {
         sdk::for_each_pin(INPUT_PINS, [&](const char *, const auto &row) { row.read(in, row.start); });

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* Kinematics as others write them in C: Y leans by a tenth into the first joint. */
+/* Kinematics as users write them in C: the first joint moves by a tenth of Y. */
 #include "hal.h"
 #include "kinematics.h"
 #include "rtapi.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* A homing module for tests: `manner` says what it does. The joint goes to where its place is 4 below the
- * start, takes that as 10, and goes to 12. */
+/* A homing module for tests: `manner` selects its behaviour. The joint moves to 4 below its start, sets its
+ * position there to 10, and moves to 12. */
 #include <math.h>
 
 #include "hal.h"
@@ -17,7 +17,7 @@ static int component, joint_count, step[16];
 static bool homed[16];
 static double start[16];
 static emcmot_joint_t *joints;
-/* What it sees of a joint in each cycle is shown by pins. */
+/* Pins show the data of a joint that the module reads in each cycle. */
 #define SEEN 7
 static const char *const seen_names[SEEN] = {"pos-fb",        "motor-pos-fb",  "vel-limit",   "acc-limit",
                                              "min-pos-limit", "max-pos-limit", "motor-offset"};
