@@ -24,7 +24,7 @@ def stolen_s():
 
 
 def may_raise():
-    """Whether this user may run threads before those of others."""
+    """Whether this user may raise the priority of threads above the threads of other programs."""
     before = os.sched_getscheduler(0)
     try:
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
@@ -35,7 +35,7 @@ def may_raise():
 
 
 def policies(process):
-    """Policy of each thread of a process, without the flag of what it starts."""
+    """Scheduling policy of each thread of a process, without the flag for its children."""
     return [os.sched_getscheduler(int(thread.name)) & ~os.SCHED_RESET_ON_FORK for thread in pathlib.Path(f'/proc/{process}/task').iterdir()]
 
 
@@ -45,7 +45,7 @@ def threads(machine, found):
     found.expect(machine.until(lambda: policies(first).count(os.SCHED_RR) == expected, 5), f'{expected} threads of task run before others', policies(first))
     started = [int(folder.name) for folder in pathlib.Path('/proc').glob('[0-9]*') if is_started_by(machine, folder)]
     found.expect(len(started) > 0, 'task has started programs')
-    for process in started:  # of millwright-rt the thread that watches task has its priority
+    for process in started:  # in millwright-rt, the thread that watches task has the priority of task
         most = 1 if b'millwright-rt' in pathlib.Path(f'/proc/{process}/cmdline').read_bytes() else 0
         found.expect(policies(process).count(os.SCHED_RR) == min(most, expected), f'priorities of process {process}', policies(process))
 
@@ -58,7 +58,7 @@ def is_started_by(machine, folder):
 
 
 def script(machine, found):
-    """A script that calculates for long has the priority of other programs, and task has its own again after it."""
+    """A long script runs with the priority of other programs, and task has its own priority again afterwards."""
     expected = 2 if may_raise() else 0
     first = machine.process.pid
     seen = machine.folder / 'seen'

@@ -26,7 +26,7 @@ def fill(machine, found):
     while len(clients) <= CLIENTS + 1:
         try:
             client = machine.linuxcnc.command()
-            client.debug(0)  # takes its place with the first command
+            client.debug(0)  # the client occupies its entry with the first command
             clients.append(client)
         except machine.linuxcnc.error:
             break
@@ -35,7 +35,7 @@ def fill(machine, found):
 
 
 def answered_s(screen, message, **fields):
-    """How long the answer DONE to a command takes."""
+    """Time until a command is answered with DONE."""
     begin = time.monotonic()
     outcome = screen.do(message, **fields)
     return time.monotonic() - begin if outcome == 'DONE' else float('inf')
@@ -56,7 +56,7 @@ def stops(machine, found, server, when):
 
 
 def clients(machine, found):
-    """All places are taken, before and after the server of the screens is started."""
+    """All entries of the mailbox are occupied, before and after the server of the screens is started."""
     machine.cut()
     crowd = fill(machine, found)
     server = Server(machine)
@@ -67,7 +67,7 @@ def clients(machine, found):
 
 
 def descriptors(machine, found):
-    """The server of the screens has 40 descriptors left, and requests that take them."""
+    """The server of the screens has 40 free descriptors, and requests occupy them."""
     machine.cut()
     crowd = fill(machine, found)
     server = Server(machine)
@@ -86,14 +86,14 @@ def descriptors(machine, found):
 
 
 def process(machine, found):
-    """Abort of a new client in another process while descriptors of task run out and one place is free."""
+    """A new client in another process aborts while task runs out of descriptors and one entry is free."""
     machine.cut()
     used = len(os.listdir(f'/proc/{machine.process.pid}/fd'))
     _, most = resource.prlimit(machine.process.pid, resource.RLIMIT_NOFILE)
     resource.prlimit(machine.process.pid, resource.RLIMIT_NOFILE, (used + LEFT, most))
     crowd = fill(machine, found)
     del crowd[1:4]
-    machine.until(lambda: False, 0.3)  # task frees the places
+    machine.until(lambda: False, 0.3)  # task releases the entries
     text = ('import time, linuxcnc\nc = linuxcnc.command()\nbegin = time.monotonic()\nc.abort()\nanswer = c.wait_complete(2)\n'
             'print(time.monotonic() - begin if answer == linuxcnc.RCS_DONE else "inf")')
     run = subprocess.run([sys.executable, '-c', text], env=machine.env, capture_output=True, text=True, timeout=30, check=False)

@@ -13,11 +13,11 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'e2e'))
 from rig import ABORT_S, END_S, run_attacks  # noqa: E402  pylint: disable=wrong-import-position
 
 LIBRARY = os.environ.get('HUNG_DISK_LIBRARY')
-REPORTED_S = 3  # the operator reads a message after 1 s, on a busy computer later
+REPORTED_S = 3  # the operator reads a message after 1 s, or later on a busy computer
 
 
 def prepare(machine):
-    """The programs of the machine are run with hung_disk.c; M101 leaves a mark."""
+    """The programs of the machine are run with hung_disk.c; M101 creates a file as its mark."""
     library = LIBRARY or machine.programs.parent / 'test/libhung_disk.so'
     machine.env.update(LD_PRELOAD=str(library), HUNG_DISK=str(machine.folder / 'hung'))
     code = machine.folder / 'nc_files/M101'
@@ -28,7 +28,7 @@ def prepare(machine):
 
 @contextlib.contextmanager
 def hung(machine, name):
-    """Calls on files with this in their path do not return."""
+    """Calls on files with this text in their path do not return."""
     control = machine.folder / 'hung'
     new = machine.folder / 'hung.new'
     new.write_text(name)
@@ -44,7 +44,7 @@ def is_reported(machine, name):
 
 
 def stays_on_and_stops(machine, found, name):
-    """While the disk is hung: a message, no stop by a watchdog, and an abort in time."""
+    """While the disk does not respond, there is a message, no stop by a watchdog, and an abort in time."""
     found.expect(is_reported(machine, name), f'a message names {name}', *machine.messages)
     machine.until(lambda: False, 0.5)
     found.expect(machine.stat.task_state == machine.linuxcnc.STATE_ON, 'the machine stays on', *machine.messages)
@@ -54,7 +54,7 @@ def stays_on_and_stops(machine, found, name):
 
 
 def table_written(machine, found):
-    """G10 L1 again and again: the machine cuts on, and the last change is in the file when the disk answers."""
+    """G10 L1 repeatedly: the machine continues to cut, and the last change is in the file when the disk responds again."""
     table = machine.ini.with_name('mill_mm.tbl')
     with hung(machine, 'mill_mm.tbl'):
         machine.cut('G21 G90 G61 F1200\n#1=1\no1 repeat [2000]\nG1 X5\nG10 L1 P1 Z[#1]\n#1=[#1+1]\nG1 X0\no1 endrepeat\nM2\n')
@@ -81,7 +81,7 @@ def table_read(machine, found):
 
 
 def user_code(machine, found):
-    """M101: its look-up and its start."""
+    """The look-up of M101 and its start."""
     marks = machine.folder / 'marks'
     found.expect(machine.run('M101\nM2\n') and marks.read_text() == 'done\n', 'M101 runs', *machine.messages)
     machine.open(machine.write('code.ngc', 'G21 G90 G61 F1200\nG1 X5\nM101\nG1 X0\nM2\n'))
@@ -95,7 +95,7 @@ def user_code(machine, found):
 
 
 def end(machine, found):
-    """SIGTERM ends the machine, and what was not written is reported."""
+    """SIGTERM ends the machine and reports the files that were not written."""
     with hung(machine, 'mill_mm.'):
         assert machine.run('G21\nG10 L1 P1 Z33\nG10 L2 P1 X2\nM2\n'), machine.messages
         took = machine.end_s()

@@ -43,7 +43,7 @@ def programs_and_logs(machine):
 
 
 def begun(words, env):
-    """(exit status, output) of a command with 1 GB of memory; status None: it did not end."""
+    """(exit status, output) of a command with 1 GB of memory; the status is None if the command did not end."""
     try:
         done = subprocess.run(words, env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, timeout=START_S,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY)))
@@ -53,7 +53,7 @@ def begun(words, env):
 
 
 def files_of_a_machine(machine):
-    """Each file that the INI file names is a pipe, or a device; and the INI file itself."""
+    """Each file that the INI file names, and the INI file itself, is replaced by a pipe or a device."""
     ini = machine.ini.read_text()
     pipe = machine.folder / 'pipe.ngc'
     spoiled = machine.ini.with_name('spoiled.ini')

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Loaded into a program by LD_PRELOAD: its calls on files whose path contains the text in the file $HUNG_DISK
-// do not return before that file is removed.
+// Loaded into a program by LD_PRELOAD. Calls on files whose path contains the text in the file $HUNG_DISK do
+// not return until that file is removed.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <fcntl.h>

@@ -16,14 +16,14 @@ from mill_by_hand import Findings  # noqa: E402  pylint: disable=wrong-import-po
 from rig import Machine  # noqa: E402  pylint: disable=wrong-import-position
 
 NOBODY = 65534
-PYTHON = '/usr/bin/python3'  # which other users may run, too
+PYTHON = '/usr/bin/python3'  # other users may run it too
 UP_S = 20
 FOUND = Findings()
 expect = FOUND.expect
 
 
 def begun(machine, name, **more):
-    """A start of the same instance, and what it has printed: 'is running: instance', or its end."""
+    """Starts the same instance again and returns its output: 'is running: instance', or its end."""
     out = machine.folder / name
     with out.open('w') as file:
         process = subprocess.Popen([machine.programs / 'millwright', 'start', machine.ini, '--no-display'], env=dict(machine.env, **more.pop('env', {})),
@@ -35,7 +35,7 @@ def begun(machine, name, **more):
 
 
 def second_start(machine, user):
-    """While it lives."""
+    """A second start while the machine is running."""
     process, text = begun(machine, 'second.txt', **user)
     process.kill()
     process.wait()

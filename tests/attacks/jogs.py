@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Clients that jog and are killed, suspended, or end; over NML a connection that is closed. The jog ends within 0.3 s, with a message. A
-client that lives and does nothing jogs on.
+client that is alive but idle continues to jog.
 
 usage: jogs.py BIN_FOLDER ROOT
 """
@@ -18,7 +18,7 @@ from mill_by_hand import Findings  # noqa: E402  pylint: disable=wrong-import-po
 from nml_session import CHANNELS, Client as Nml  # noqa: E402  pylint: disable=wrong-import-position
 from rig import Machine  # noqa: E402  pylint: disable=wrong-import-position
 
-END_S = 0.3    # what docs/integrator/security.md states
+END_S = 0.3    # the limit in docs/integrator/security.md
 SPEED = 4.0    # slow enough that no limit ends the jog in this test
 FOUND = Findings()
 expect = FOUND.expect
@@ -37,7 +37,7 @@ def isMoving(machine):
 
 
 def to_start(machine):
-    """X where every jog of this test has room."""
+    """Moves X to a position with room for every jog of this test."""
     machine.command.jog(machine.linuxcnc.JOG_STOP, 0, 0)
     machine.command.wait_complete()
     machine.until(lambda: not isMoving(machine), 2)
@@ -98,7 +98,7 @@ def living_client(machine):
 
 
 def other_takes_over(machine):
-    """The jog belongs to who began it last."""
+    """The client that began a jog last owns it."""
     to_start(machine)
     process = jogger(machine, 60)
     machine.command.jog(machine.linuxcnc.JOG_CONTINUOUS, 0, 0, SPEED)
@@ -111,7 +111,7 @@ def other_takes_over(machine):
 
 
 def over_nml(machine):
-    """A client of LinuxCNC's kind: it sends the jog and renews nothing."""
+    """A client in the manner of LinuxCNC sends the jog and renews no lease."""
     to_start(machine)
     with socket.socket() as free:
         free.bind(('127.0.0.1', 0))

@@ -18,12 +18,12 @@ def score(process):
 
 
 def may_lower():
-    """Whether programs of this user may lower their value: a kernel with CAP_SYS_RESOURCE for root."""
+    """Whether programs of this user may lower their value; the kernel requires CAP_SYS_RESOURCE, as root has."""
     return subprocess.run(['sh', '-c', 'echo -900 > /proc/self/oom_score_adj'], stderr=subprocess.DEVNULL, check=False).returncode == 0
 
 
 def program_of(machine, word):
-    """The process of this machine whose command line has a word."""
+    """The process of this machine whose command line contains a word."""
     for folder in pathlib.Path('/proc').glob('[0-9]*'):
         try:
             if word in (folder / 'cmdline').read_bytes() and machine.env['MILLWRIGHT_INSTANCE'].encode() in (folder / 'environ').read_bytes():

@@ -15,7 +15,7 @@ from web_screen import Screen  # noqa: E402  pylint: disable=wrong-import-positi
 
 
 class Reader(Screen):
-    """A screen and when, by this computer's clock, each message appeared."""
+    """A screen, and the time at which each message appeared by the clock of this computer."""
 
     def __init__(self, port):
         self.appeared = {}
@@ -31,7 +31,7 @@ class Reader(Screen):
 
 
 def encoding(machine, found):
-    """A message whose bytes are no UTF-8: readers get it with the wrong bytes replaced."""
+    """A message that is not valid UTF-8; readers receive it with the wrong bytes replaced."""
     path = machine.folder / 'latin.ngc'
     path.write_bytes(b'(MSG, \x85 gr\xfc\xdfe)\nM2\n')
     machine.open(path)

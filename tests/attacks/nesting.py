@@ -19,7 +19,7 @@ import time
 N = 10_000_000
 MEMORY = 1_000_000 * 1024   # ulimit -v 1000000
 CASE_S = 20
-OUTPUT_BYTES = 20_000       # what a person may be shown of such a file
+OUTPUT_BYTES = 20_000       # limit of the output that a person sees for such a file
 LINE = 900_000              # below the longest line of G-code, so that the expression itself is read
 
 
@@ -119,7 +119,7 @@ TCL = {
 
 
 def cases(programs):
-    """(name, file name, contents, command, the place of the error): `command` gets the file."""
+    """(name, file name, contents, command, position of the error): `command` receives the file."""
     rs274 = [programs / 'rs274', '-g']
     for name, make in EXPRESSIONS.items():
         yield f'rs274.{name}.long', 'a.ngc', make(N) + '\nM2\n', rs274, r'a\.ngc:1\b'
@@ -148,7 +148,7 @@ def limited():
 
 
 def finding(root, case):
-    """(what is wrong with the case, empty: nothing; a line on what it took)."""
+    """(fault of the case, empty if none; a line about the time and memory that it used)."""
     name, file, text, command, place = case
     folder = root / name
     folder.mkdir()

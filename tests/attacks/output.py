@@ -16,7 +16,8 @@ from mill_by_hand import Findings  # noqa: E402  pylint: disable=wrong-import-po
 from rig import ABORT_S, END_S, Machine  # noqa: E402  pylint: disable=wrong-import-position
 
 KINDS = ('gone', 'unread', 'stopped', 'full')
-# More messages than pipe and relay hold; M66 keeps the interpreter from reading them faster than a client does.
+# More messages than the pipe and the relay can hold; M66 prevents the interpreter from reading them faster
+# than a client.
 MESSAGE = '(MSG,' + 'part 1234 at the middle of the plate ' * 6 + ')\n'
 MANY = f'G21 G90 G61 F600\nM3 S500\no1 repeat [3000]\n{MESSAGE}M66 P0 L0\no1 endrepeat\no2 repeat [100]\nG1 X10\nG1 X0\no2 endrepeat\nM2\n'
 
@@ -55,7 +56,7 @@ def attack(programs, root, kind):
 def main():
     if len(sys.argv) > 3:
         return attack(sys.argv[1], sys.argv[2], sys.argv[3])
-    # linuxcnc belongs to one instance for each process.
+    # Each process can use linuxcnc with only one instance.
     return max(subprocess.run([sys.executable, __file__, *sys.argv[1:3], kind], check=False).returncode for kind in KINDS)
 
 

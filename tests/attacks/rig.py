@@ -10,13 +10,13 @@ import sys
 import tempfile
 import time
 
-ABORT_S = 0.1   # an abort is answered within so long
-END_S = 2.0     # SIGTERM ends every process within so long
+ABORT_S = 0.1   # maximum time until an abort is answered
+END_S = 2.0     # maximum time from SIGTERM until every process has ended
 UP_S = 20
 
 
 class Machine:
-    """`programs`: the folder of millwright. One for each process, as linuxcnc looks for its instance when it is imported."""
+    """`programs`: the folder of millwright. One machine per process, because linuxcnc looks for its instance when it is imported."""
 
     def __init__(self, programs, root, name, edit=lambda text: text):
         self.programs = pathlib.Path(programs).resolve()
@@ -32,7 +32,7 @@ class Machine:
         self.messages = []
 
     def start(self, *words, stdout=None, stderr=subprocess.STDOUT, **more):
-        """Brings the machine up, on and homed."""
+        """Starts the machine, switches it on and homes it."""
         with (self.folder / 'out.txt').open('w') as out:
             self.process = subprocess.Popen([self.programs / 'millwright', 'start', self.ini, '--no-display', *words], env=self.env,
                                             stdin=subprocess.DEVNULL, stdout=out if stdout is None else stdout, stderr=stderr, **more)
@@ -59,7 +59,7 @@ class Machine:
         return (self.folder / 'out.txt').read_text(errors='replace')
 
     def until(self, condition, seconds):
-        """Polls the status until `condition` holds; collects messages meanwhile."""
+        """Polls the status until `condition` holds, and collects the messages."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.stat.poll()
@@ -85,13 +85,13 @@ class Machine:
         return self.command.wait_complete(10)
 
     def cut(self, text='G21 G90 G61 F600\nM3 S500\nM8\no1 repeat [2000]\n(MSG, next part)\nG1 X20\nG1 X0\no1 endrepeat\nM2\n'):
-        """Begins to cut and waits until the axes move."""
+        """Starts to cut and waits until the axes move."""
         assert self.open(self.write('cut.ngc', text)) == self.linuxcnc.RCS_DONE, self.messages
         self.command.auto(self.linuxcnc.AUTO_RUN, 1)
         assert self.until(lambda: self.stat.current_vel > 0, 30), (self.messages, self.stat.interp_state)
 
     def run(self, text):
-        """Runs a program to its end, or to the error that ends it; False where it does not come to it in 10 s."""
+        """Runs a program to its end, or to the error that ends it; False if neither happens within 10 s."""
         self.messages.clear()
         assert self.open(self.write('run.ngc', text)) == self.linuxcnc.RCS_DONE, self.messages
         self.command.auto(self.linuxcnc.AUTO_RUN, 1)
@@ -99,7 +99,7 @@ class Machine:
         return self.until(lambda: self.stat.interp_state == self.linuxcnc.INTERP_IDLE, 10)
 
     def cuts_on(self, seconds):
-        """Whether it moves and stays on for so long."""
+        """Whether the machine moves and stays on for this time."""
         end = time.monotonic() + seconds
         moved = False
         while time.monotonic() < end:
@@ -112,14 +112,14 @@ class Machine:
         return moved
 
     def abort_s(self, seconds=5):
-        """How long it takes until the status shows that an abort is carried out. Then waits until the axes rest."""
+        """Time until the status shows that an abort has been carried out. Then waits until the axes have stopped."""
         begin = time.monotonic()
         self.command.abort()
         took = time.monotonic() - begin
         return took if self.command.wait_complete(seconds) == self.linuxcnc.RCS_DONE else float('inf')
 
     def end_s(self):
-        """How long SIGTERM takes to end it; what does not end in time is killed."""
+        """Time from SIGTERM to the end of the machine; a machine that does not end in time is killed."""
         begin = time.monotonic()
         self.process.terminate()
         try:

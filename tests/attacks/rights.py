@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Who may do what: each row of the table in docs/integrator/security.md is tried at a running machine by a client of each column. What counts is
-what happened: a file that is written, a program that is open, an axis that has moved.
+"""Tests the rights of each role: each row of the table in docs/integrator/security.md is tried at a running machine by a client of each column. The result
+counts: a file that is written, a program that is open, an axis that has moved.
 
 usage: rights.py BIN_FOLDER ROOT
 """
@@ -23,7 +23,7 @@ from rig import Machine  # noqa: E402  pylint: disable=wrong-import-position
 from web_screen import Screen  # noqa: E402  pylint: disable=wrong-import-position
 
 NOBODY = 65534
-PYTHON = '/usr/bin/python3'  # which other users may run, too
+PYTHON = '/usr/bin/python3'  # other users may run it too
 FOUND = Findings()
 expect = FOUND.expect
 
@@ -43,7 +43,7 @@ class Web:
         self.port, self.role, self.last = ports[1], role, None
 
     def screen(self):
-        """A new one: the server closes those that are silent for 5 s."""
+        """Opens a new connection, because the server closes connections that are silent for 5 s."""
         if self.last is not None:
             self.last.socket.close()
         self.last = Screen(self.port)
@@ -80,7 +80,7 @@ class Web:
 
 
 class Python:
-    """A program of the machine's user."""
+    """A program of the user who owns the machine."""
 
     def __init__(self, bench):
         self.machine = bench.machine
@@ -174,7 +174,7 @@ class OverNml:
 
 
 class OtherUser:
-    """A program of another local user, with all the names that it needs to find the machine."""
+    """A program of another local user that has all the names needed to find the machine."""
 
     def __init__(self, bench):
         self.bench = bench
@@ -230,7 +230,7 @@ class Bench:
         return subprocess.run(words, env=self.machine.env, check=False, capture_output=True, user=NOBODY, group=NOBODY, extra_groups=[], timeout=30)
 
     def fresh(self, folder, name):
-        """A path where no file is."""
+        """A path without a file."""
         self.count += 1
         return self.machine.folder / folder / f'{self.count}_{name}'
 
@@ -241,7 +241,7 @@ class Bench:
         self.machine.command.wait_complete(5)
         self.machine.until(lambda: self.machine.stat.interp_state == self.machine.linuxcnc.INTERP_IDLE, 5)
 
-    # One for each row of the table: whether the client of the column could do it.
+    # One function for each row of the table: whether the client of the column succeeded.
     def status(self, client):
         return client.status()
 
@@ -377,7 +377,7 @@ def check_table(bench, root):
 
 
 def check_no_overwriting(bench):
-    """The role operate cannot overwrite files of the machine by names of logs."""
+    """The role operate cannot overwrite files of the machine through the names of logs."""
     machine = bench.machine
     web = Web(bench, 'operate')
     bench.mode(machine.linuxcnc.MODE_MDI)
@@ -399,7 +399,7 @@ def check_no_overwriting(bench):
 
 
 def check_modes(machine):
-    """What lies in shared folders is readable by its user alone."""
+    """Files in shared folders are readable only by their user."""
     for path in pathlib.Path('/dev/shm').glob(f"*{machine.env['MILLWRIGHT_INSTANCE']}*"):
         mode = stat.S_IMODE(path.stat().st_mode)
         expect(mode & 0o077 == 0, f'{path} has mode {mode:o}')

@@ -21,7 +21,7 @@ def prepare(machine):
 
 
 def cut_then(machine, python):
-    """Cuts a line of 20 s, with `python` behind it."""
+    """Cuts a line of 20 s, followed by `python`."""
     machine.cut(f'G21 G90 G64 F300\nM3 S500\nG1 X100\n;py,{python}\nG1 X0\nM2\n')
 
 

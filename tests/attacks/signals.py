@@ -30,7 +30,8 @@ def attack(programs, root, name):
         while machine.process.poll() is None and time.monotonic() - begin < END_S:
             try:
                 spindle_on, speed = hal.get_value('spindle.0.on'), abs(hal.get_value('joint.0.vel-cmd'))
-            except Exception:  # pylint: disable=broad-exception-caught  # hal ends with the machine, in any call
+            # pylint: disable=broad-exception-caught  # hal may end with the machine in any call
+            except Exception:
                 break
             if not spindle_on:
                 moving_without_spindle = max(moving_without_spindle, speed)

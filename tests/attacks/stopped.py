@@ -78,7 +78,7 @@ def killed(machine, found):
 
 
 def fast(machine, found):
-    """Axes that brake for longer than an answer to an abort may take."""
+    """Axes whose braking takes longer than an abort may take to be answered."""
     machine.cut('G21 G90\no1 repeat [20]\nG0 X240\nG0 X0\no1 endrepeat\nM2\n')
     found.expect(machine.until(lambda: machine.stat.current_vel > 190, 5), 'it moves fast', machine.stat.current_vel)
     took = machine.abort_s()

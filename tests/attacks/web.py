@@ -158,7 +158,7 @@ def few_descriptors(screen):
 
 
 def foreign(screen, token):
-    """What another user reaches."""
+    """Another user reaches only the permitted parts."""
     plain = {f'{method} {target}': screen.ask(target, '', method, body)[0] for method, target, body in (
         ('GET', '/api/machine', ''), ('GET', '/api/files', ''), ('GET', '/api/files/large.ngc', ''), ('GET', '/api/path?file=slip.ngc', ''),
         ('PUT', '/api/files/evil.ngc', 'M2'), ('DELETE', '/api/files/slip.ngc', ''), ('GET', '/api/hal?glob=*', ''),
@@ -173,7 +173,7 @@ def foreign(screen, token):
 
 
 def as_nobody(call):
-    """What `call` returns in a process of another user."""
+    """The result of `call` in a process of another user."""
     reader, writer = os.pipe()
     child = os.fork()
     if child == 0:

@@ -51,7 +51,7 @@ void add_extension(Sum &sum, const std::string &text) {
     e.judged += std::strtoul(text.c_str() + judged, nullptr, 10);
 }
 
-/// Of all lines of a log.
+/// Sums of all lines of a log.
 void print_lines(std::istream &file) {
     Sum sum;
     constexpr double LONG_ENOUGH_S = 10;

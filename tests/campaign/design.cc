@@ -68,7 +68,7 @@ void make_homing(plants::Random &random, JointDesign &j) {
         j.home_offset = j.home;
         return;
     }
-    // Fast enough to find it soon, slow enough to stop within the overtravel behind the switch.
+    // Fast enough to find the switch soon, slow enough to stop within the overtravel behind it.
     constexpr double ROOM = 2.5;
     const double stoppable = 0.7 * std::sqrt(2 * ROOM * j.acceleration);
     j.search = -rounded(std::min({0.9 * j.velocity, stoppable, j.jerk > 0 ? 15.0 : 1e9}), 0.1);
@@ -260,7 +260,7 @@ double JointDesign::screw_error_at(double x) const {
 
 double JointDesign::slide_at(double turned) const {
     double x = turned;
-    constexpr int ROUNDS = 4;  // each gains two digits and more
+    constexpr int ROUNDS = 4;  // each factor gains two digits and more
     for (int i = 0; i < ROUNDS && screw_error > 0; ++i) {
         x = turned - screw_error_at(x);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Machines whose joints are not axes that no plan before the fourth has. Every place of the room of their
-// axes is reached, with some way to where they reach no farther, or where their answers meet.
+// Machines whose joints are not axes that plans before the fourth do not have. Every position within the
+// travel of their axes can be reached, with some distance to the limit of their reach and to singular poses.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 namespace mw::campaign {
 namespace {
 
-/// The room of an axis.
+/// The travel of an axis.
 struct Span {
     int axis = 0;
     double low = 0, high = 0;
@@ -79,7 +79,7 @@ void make_hexapod(plants::Random &random, Design &d) {
            {geometry::AXIS_B, -10, 10},
            {geometry::AXIS_C, -10, 10}},
           std::vector<Travel>(6, {false, 10, 60, 29.7462}));
-    d.hal_lines = "setp genhexkins.z 20\n";  // where the forward side begins to look
+    d.hal_lines = "setp genhexkins.z 20\n";  // start of the forward search
 }
 
 void make_tilting_head(plants::Random &random, Design &d) {
@@ -98,8 +98,8 @@ void make_tilting_head(plants::Random &random, Design &d) {
 
 void make_pentapod(plants::Random &random, Design &d) {
     d.name = d.kinematics = "pentakins";
-    // The lengths of its struts at Z150. Around it there is a room without singular poses; lower ones have
-    // none.
+    // The lengths of its struts at Z150. The surrounding volume has no singular poses; at lower positions the
+    // joint limits exclude them.
     constexpr double LENGTHS[] = {1033.6325, 1010.2512, 929.0184, 906.3236, 864.4091};
     std::vector<Travel> struts;
     for (const double length : LENGTHS) {

@@ -7,7 +7,7 @@
 namespace mw::campaign {
 
 double rounded(double x, double step);
-/// Ten to the power of something between.
+/// Ten to the power of a random number.
 double power(plants::Random &random, double low, double high);
 JointDesign make_joint(plants::Random &random, bool isAngular, bool isJerkLimited);
 /// A joint of a machine whose joints are not axes: travel from -reach to reach, homed at its position.

@@ -77,7 +77,7 @@ void Judge::check_homes(const Sample &s) {
 void Judge::check_places(const Sample &s) {
     constexpr int RESTED = 60;           // the drive has settled
     constexpr double DRIVE = 3e-3;       // deviation that friction causes
-    constexpr double OVERSHOOT = 0.012;  // of the motor, which takes the slide with it one way only
+    constexpr double OVERSHOOT = 0.012;  // backlash of the motor, which moves the slide in one direction only
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         const JointSample &q = s.joints[j];
         JointJudge &judge = joints_[j];

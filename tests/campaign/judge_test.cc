@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A judge that cannot find anything is worth nothing: each rule is broken here once.
+// A judge that finds no fault is useless, so this test breaks each rule once.
 #include <cmath>
 #include <functional>
 
@@ -46,7 +46,7 @@ class JudgeTest : public ::testing::Test {
             judge_.sample(s_);
         }
     }
-    /// Smoothly from where it is, with half of all limits.
+    /// Moves smoothly from the current position, with half of all limits.
     void glide(double seconds, double v) {
         const double from = joint().motor_cmd;
         for (double t = T; t <= seconds; t += T) {
@@ -191,7 +191,7 @@ TEST(StopBound, IsTheTimeOfTheAccelerationOnALineAndOnAnArc) {
     constexpr double V = 50, A = 1000, LONG_S = 0.5;
     StoppingGroup line{{{}}, A};
     StoppingGroup arc{{{}, {}}, A};
-    constexpr double RADIUS = 3;  // turning takes 833 of the 1000
+    constexpr double RADIUS = 3;  // the circular motion uses 833 of the 1000
     for (int n = 0; n * T < LONG_S; ++n) {
         const double s = V * n * T;
         line.places[0].push_back(s);
@@ -250,10 +250,11 @@ TEST(StopBound, WithJerkAnAccelerationThatRisesComesDownFirst) {
         return std::vector<double>{0, (v - a * T) * T, (2 * v - a * T) * T};
     };
     EXPECT_NEAR(least_stop_with_jerk(moving(10, 0), J, T), 2 * std::sqrt(10 / J), 1e-9);
-    // 0.1 s to no acceleration, by then 15/s; half of that is gone after sqrt(15 / J), as much again to rest.
+    // The acceleration has fallen to zero after 0.1 s, at 15/s; half of that speed is lost after sqrt(15 /
+    // J), the other half takes the same time.
     EXPECT_NEAR(least_stop_with_jerk(moving(10, 100), J, T), 0.1 + 2 * std::sqrt(15 / J), 1e-9);
     EXPECT_NEAR(least_stop_with_jerk(moving(-10, -100), J, T), 0.1 + 2 * std::sqrt(15 / J), 1e-9);
-    // Of a stop from 15/s that began 0.1 s ago.
+    // The duration of a stop from 15/s that began 0.1 s ago.
     EXPECT_NEAR(least_stop_with_jerk(moving(10, -100), J, T), 2 * std::sqrt(15 / J) - 0.1, 1e-9);
     EXPECT_EQ(least_stop_with_jerk(moving(10, 100), 0, T), 0);
 }

@@ -34,8 +34,8 @@ struct OffsetPins {
 };
 
 struct MachinePins {
-    volatile bool *in_position, *is_coord, *is_teleop, *are_all_homed;  ///< of motion
-    volatile bool *enable, *probe, *inhibit;                            ///< to motion
+    volatile bool *in_position, *is_coord, *is_teleop, *are_all_homed;  ///< outputs of motion
+    volatile bool *enable, *probe, *inhibit;                            ///< inputs of motion
     volatile bool *chain, *user_enable;
     volatile double *adaptive_feed;
     SpindlePins spindle;
@@ -44,9 +44,9 @@ struct MachinePins {
     std::vector<volatile double *> axes;  ///< commanded
     std::vector<OffsetPins> offsets;      ///< of axes
     volatile bool *is_offset_limited, *input;
-    std::vector<volatile bool *> outputs;  ///< that can do work
+    std::vector<volatile bool *> outputs;  ///< amplifiers that are able to move
 
-    /// The name of a pin that is missing; empty when all are there. HAL files have been run: links move pins.
+    /// The name of a missing pin; empty when all exist. HAL files have been run, and links move pins.
     std::string bind(hal::Instance &hal, std::size_t num_joints);
 };
 

@@ -9,7 +9,7 @@
 namespace mw::campaign {
 namespace {
 
-/// A twin of a gantry is not moved alone.
+/// The second joint of a gantry is not moved alone.
 bool isAlone(const Design &design, int joint) {
     return design.joints[static_cast<std::size_t>(joint)].sequence >= 0;
 }
@@ -74,7 +74,7 @@ Trouble make_trouble(plants::Random &random, const Design &design, bool isPassin
     return t;
 }
 
-/// Sessions of about a minute, as they were first.
+/// Sessions of about a minute, as in the first plan.
 Plan make_long_plan(std::uint64_t seed) {
     Plan plan;
     plants::Random random(seed * 0x2545f4914f6cdd1dU + 1);
@@ -120,7 +120,7 @@ Act make_act(plants::Random &random, const Design &design, unsigned version) {
     } else if (kind < 0.9) {
         act = make_jog(random, design);
         if (design.name == "delta" || design.isFurther) {
-            // Legs that get far apart leave the room of the axes.
+            // Legs that are far apart leave the travel of the axes.
             act.work = Work::JOG_AXIS;
             const int last = design.isFurther ? static_cast<int>(design.axes.size()) - 1 : 2;
             act.target = design.axes[static_cast<std::size_t>(random.whole(0, last))].axis;
@@ -147,7 +147,7 @@ void make_troubles(plants::Random &random, const Design &design, Act &act) {
     }
     if (random.chance(0.7)) {
         act.troubles.push_back(make_trouble(random, design, false, span_ms));
-        // After the death of task no act can follow: task may die in the last act only.
+        // No act can follow the death of task, so task may die only in the last act.
         Trouble &last = act.troubles.back();
         last.what = last.what == Upset::TASK_DEAD ? Upset::ABORT : last.what;
     }

@@ -39,8 +39,8 @@ struct SyncWish {
     Sync kind = Sync::NONE;
     double lead = 0;          ///< [unit/turn]; SURFACE: [m/min]
     double from = 0, to = 0;  ///< along Z; SURFACE: along X
-    double rpm = 0;           ///< with its sign; SURFACE: the most
-    int passes = 0;           ///< at least
+    double rpm = 0;           ///< with its sign; SURFACE: the maximum
+    int passes = 0;           ///< minimum
     bool isShort = false;     ///< too short to reach its speed
 };
 
@@ -50,7 +50,7 @@ struct Block {
     bool isMove = false, isArc = false;
     bool isTimed = true;  ///< its duration can be estimated
     geometry::Pose end, centre;
-    double angle_rad = 0;  ///< about +Z
+    double angle_rad = 0;  ///< rotation about +Z
     double dwell_s = 0;
     geometry::MoveSettings settings;
     ProbeMove probe;

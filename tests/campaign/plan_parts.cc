@@ -6,7 +6,7 @@
 namespace mw::campaign {
 namespace {
 
-/// Of the blocks that are left out only moves are: all that is no move stays.
+/// When blocks are reduced, only moves are removed; all other blocks remain.
 Act part_of(Act act, const campaign_runner::Kept &kept) {
     std::vector<Trouble> troubles;
     for (std::size_t i = 0; i < act.troubles.size(); ++i) {

@@ -13,7 +13,7 @@ constexpr int TOWARDS = 2, TOWARDS_MAYBE = 3, AWAY = 4, AWAY_MAYBE = 5;  // G38.
 
 }  // namespace
 
-/// A probing move and what the program says of it. The speed.
+/// The speed of a probing move, whose result the program prints.
 double Writer::probe(const Contact &contact, bool isHigh, int kind, double to) {
     const double from = at_[contact.axis];
     const double wall = isHigh ? contact.high : contact.low;
@@ -29,14 +29,14 @@ double Writer::probe(const Contact &contact, bool isHigh, int kind, double to) {
     return feed_ / 60;
 }
 
-/// One that must end the program.
+/// A probing move that must end the program.
 bool Writer::probe_wrongly(const Contact &contact, bool isHigh, bool isTouching) {
     const double middle = 0.5 * (contact.low + contact.high);
     const double wall = isHigh ? contact.high : contact.low;
     const double inside = wall + 0.3 * (middle - wall);
     const double outside = wall + (isHigh ? 3 : -3);
-    const int kind = isTouching || random_.chance(0.5) ? TOWARDS  // has contact already, or finds none
-                                                       : AWAY;    // has no contact
+    // has contact at its start, or finds no contact
+    const int kind = isTouching || random_.chance(0.5) ? TOWARDS : AWAY;  // has no contact
     probe(contact, isHigh, kind, isTouching ? outside : inside);
     return true;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs that move in step with the spindle.
+// Programs whose motion is synchronized with the spindle.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 
 namespace mw::campaign {
 
-/// A part of what Z can.
+/// A fraction of the speed that Z permits.
 double Writer::speed_for_z(double share) const {
     const AxisDesign z = design_.z_with_joints();
     return share * std::min((1 - z.offset_ratio) * z.velocity, design_.velocity);
@@ -111,7 +111,7 @@ Act Writer::write_in_step() {
         const double most = speed_for_z(0.45) / std::abs(sync.rpm / 60);
         sync.lead = to_grid(std::min(random_.real(0.3, 3), most));
         if (isTap) {
-            // As the spindle turns back the tool changes its speed as fast.
+            // While the spindle reverses, the tool changes its speed with the same acceleration.
             const double a = 0.4 * std::min(z.acceleration, design_.acceleration);
             sync.lead = to_grid(std::min(sync.lead, a / design_.spindle.ramp));
             if (design_.isJerkLimited) {
@@ -125,7 +125,7 @@ Act Writer::write_in_step() {
             }
         }
         if (kind == 0 && !design_.isTrivial) {
-            kind = 3;  // threads of these are driven by time
+            kind = 3;  // threads of these plans are driven by time
         }
         const double v = sync.lead * std::abs(sync.rpm) / 60;
         const double overrun = isTap ? sync.lead * turns_s * (turns_s / design_.spindle.ramp + 0.04) : 0;

@@ -132,7 +132,7 @@ std::string Writer::feed_word() {
     return fmt::format(" F{:.0f}", feed_);
 }
 
-/// The time that it takes at its feed.
+/// The duration of the move at its feed.
 double Writer::line() {
     const geometry::Pose from = at_;
     const double size = std::pow(10.0, random_.real(-1, 0));
@@ -185,7 +185,7 @@ double Writer::arc() {
     Block &b = blocks_.back();
     b.isArc = true;
     b.centre = centre;
-    // As the rounded end says.
+    // The tolerance follows from the rounded end point.
     const double to = std::atan2(at_[1] - centre[1], at_[0] - centre[0]);
     const double turn = 2 * std::numbers::pi;
     double swept = std::remainder(to - from - angle, turn) + angle;

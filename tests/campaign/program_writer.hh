@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Writes programs whose path it knows.
+// Writes programs and records their path.
 #pragma once
 
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace mw::campaign {
 
-/// Programs have as many digits.
+/// Programs have this number of digits.
 double to_grid(double x);
 
 class Writer {
   public:
     Writer(plants::Random &random, const Design &design) : random_(random), design_(design) {}
 
-    /// What it writes may wait for inputs (M66) and have adaptive feed (M52). True when it does.
+    /// The program may wait for inputs (M66) and have adaptive feed (M52). Returns true when it does.
     bool allow_waits();
-    /// A program of lines and arcs that takes about so long at its feeds.
+    /// A program of lines and arcs that takes about this time at its feeds.
     std::vector<Block> write(double seconds);
-    /// Finds the walls of a room and leaves them again, or misses them.
+    /// Probes the walls of a room and retracts, or misses the walls.
     Act write_probing();
-    /// In step with the spindle.
+    /// Moves that are synchronized with the spindle.
     Act write_in_step();
 
   private:

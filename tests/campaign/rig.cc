@@ -14,7 +14,7 @@ constexpr std::int64_t PERIOD_NS = 1000000;
 constexpr double PERIOD_S = 1e-3;
 constexpr double NAN_VALUE = std::numeric_limits<double>::quiet_NaN();
 constexpr int CONFIGURE_CYCLES = 2000;
-/// Of the spindle [rpm/s], and how near its speed has to be.
+/// Acceleration of the spindle [rpm/s], and the permitted deviation of its speed.
 constexpr double SPINDLE_RAMP = 8000, AT_SPEED_RPM = 5;
 constexpr double AMPLIFIER_RISE_S = 0;
 
@@ -56,7 +56,8 @@ Rig::Rig(const Design &design, std::uint64_t seed, std::string ini)
 }
 
 Rig::~Rig() {
-    // The task side ends first: its pins live in the host's instance, and its periodic runs it.
+    // The task side ends first, because its pins belong to the host's instance and the host's periodic
+    // function runs it.
     if (periodic_.value != 0) {
         scheduler_.remove(periodic_);
     }
@@ -137,7 +138,7 @@ void Rig::cycle() {
     take_sample();
 }
 
-/// A period of physics between two servo cycles: from the motors' commands to what is measured.
+/// A period of the plants between two servo cycles: from the commands of the motors to the measured values.
 void Rig::run_plants() {
     for (std::size_t j = 0; j < plants_.size(); ++j) {
         Plant &p = plants_[j];
@@ -322,7 +323,7 @@ void Rig::repair() {
     scheduler_.isPlannerHeld = false;
 }
 
-/// How far a joint is from the first one of its axis, by its motor.
+/// Deviation of a joint from the first joint of its axis, by its motor.
 double Rig::askew(std::size_t joint) const {
     const std::size_t first =
         design_.isTrivial ? design_.coordinates.find(design_.coordinates[joint]) : joint;

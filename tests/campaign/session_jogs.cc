@@ -53,7 +53,7 @@ std::pair<double, double> Session::range_of(const Act &act, bool isJoint) const 
     return {-1e300, 1e300};
 }
 
-/// Renews a jog as long as it is wanted, then says nothing any more: it has to end by itself.
+/// Renews a jog as long as it is wanted and then stays silent: the jog must end by itself.
 void Session::keep_lease(const Act &act) {
     Extension &count = verdict_.extensions["leases"];
     ++count.ran;
@@ -121,7 +121,7 @@ void Session::jog(const Act &act) {
     }
 }
 
-/// Turns a wheel for a while; who stops the machine takes his hand off.
+/// Turns a wheel for some time; the operator releases it before he stops the machine.
 void Session::turn(const Act &act) {
     const Turning &t = act.turning;
     Extension &count = verdict_.extensions[t.isVelocityMode ? "wheels that stop" : "wheels"];
@@ -133,7 +133,7 @@ void Session::turn(const Act &act) {
     const bool isLedFirst = !t.isJoint && areSidesApart();
     rig_->link_wheel(&t, act.target);
     constexpr double SLACK_S = 0.1;
-    // With the wheel's part of the acceleration.
+    // With the fraction of the acceleration for the wheel.
     const double gently_s =
         judge_.time_to_brake() * (1 / t.accel_fraction - 1) + (t.accel_fraction < 1 ? SLACK_S : 0);
     const bool isShared = !t.isJoint && !plan_.design.isTrivial;
@@ -153,7 +153,7 @@ void Session::turn(const Act &act) {
         cycle();
     }
     if (t.isVelocityMode && !isStopped_ && !isDisturbed_ && !isOver()) {
-        // It stops when the wheel does.
+        // The joint stops when the wheel stops.
         judge_.stops_later_s = gently_s + SLACK_S;
         judge_.stop(Stop::ALONG_THE_PATH, 5);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a program that has probed must have found.
+// The expected results of a program that has probed.
 #include <algorithm>
 #include <cmath>
 
@@ -19,13 +19,13 @@ double way_to_stop(const Design &design, const JointDesign &joint, int axis, dou
     for (const AxisDesign &one : design.axes) {
         a = one.axis == axis ? std::min(a, one.acceleration_of_path()) : a;
     }
-    // All axes of a path have one mean, that of the slowest.
+    // All axes of a path share one mean filter, that of the slowest axis.
     const double stop_s = speed / a + 2.5 * design.rise_s();
     constexpr double DRIVE = 0.03;
     return speed * (FACTOR * stop_s + SLACK_S) + DRIVE;
 }
 
-/// What is said of a probing move: found or not, and where.
+/// The result of a probing move: found or not, and the position.
 struct Found {
     bool isFound = false;
     double place = 0;
@@ -56,7 +56,8 @@ void Session::check_probing(const Act &act, End end) {
     ++count.ran;
     verdict_.ended += end == End::DONE ? 1 : 0;
     const bool isUnknown = isProbeMoved(act) && end != End::DONE;
-    if (isStopped_ || isUnknown || hasTrouble(act, Upset::OFFSET)) {  // not what is known of the probe
+    // but not the known results of the probe
+    if (isStopped_ || isUnknown || hasTrouble(act, Upset::OFFSET)) {
         return;
     }
     const std::vector<Found> found = read_found(told_);

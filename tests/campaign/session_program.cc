@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs of a session, and what goes wrong meanwhile.
+// Programs of a session, and the faults that occur while they run.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -54,7 +54,7 @@ const AxisDesign &offset_axis(const Design &design, const Trouble &t) {
     return design.axes[static_cast<std::size_t>(t.joint) % design.axes.size()];
 }
 
-/// What the offset is asked to become.
+/// The requested value of the offset.
 double offset_of(const Trouble &t) {
     constexpr double MOST = 8;
     return MOST * (2 * t.value - 1);
@@ -108,7 +108,7 @@ void Session::run_program(const Act &act) {
         judge_.back_to = rig_->sample();
     }
     if (plan_.design.isJerkLimited && hasTrouble(act, Upset::ADAPTIVE)) {
-        // Where the path is gone back along, changes of the rate have a third of the jerk.
+        // Where the path may be reversed, changes of the rate use a third of the jerk.
         judge_.stops_later_s += judge_.time_to_brake();
     }
     isRecording_ = true;
@@ -140,7 +140,7 @@ void Session::run_program(const Act &act) {
     }
 }
 
-/// It is at its end, has been everywhere in order within the tolerance, and was not slow.
+/// The path has reached its end, has passed all points in order within the tolerance, and was not slow.
 void Session::check_program(const Act &act, const geometry::Pose &from, double took_s) {
     double tolerance = 1e-3;
     geometry::Pose last = from;
@@ -154,7 +154,7 @@ void Session::check_program(const Act &act, const geometry::Pose &from, double t
         return;
     }
     if (isReversed_) {
-        return;  // it has gone back and forth
+        return;  // it has moved back and forth
     }
     double longest = 0;
     double length = 0;
@@ -165,7 +165,7 @@ void Session::check_program(const Act &act, const geometry::Pose &from, double t
     }
     constexpr double SHARE = 0.2, MOST_POINTS = 100000;
     const double cut = std::max(SHARE * tolerance, length / MOST_POINTS);
-    // Between two samples a curve leaves their chord by less than a quarter of it.
+    // Between two samples a curve deviates from their chord by less than a quarter of the chord.
     const double allowed = tolerance + 0.5 * cut + 0.02 * longest + 1e-4;
     if (!testing::isWithinInOrder(testing::refined(path_, cut), programmed_path(act, from, cut), allowed)) {
         fail("path", fmt::format("more than {:.4g} beside the program, or out of order", allowed));
@@ -176,7 +176,8 @@ void Session::check_program(const Act &act, const geometry::Pose &from, double t
         ++verdict_.timed;
         const double expected = estimate(act, from);
         const double off = took_s / expected - 1;
-        // Commands, ends of outputs and a start of the planner cost cycles that no estimate knows.
+        // Commands, ends of outputs and the start of the planner need cycles that the estimate does not
+        // include.
         constexpr double PART = 0.01;
         constexpr double SLACK_S = 0.1;
         verdict_.worst_time = std::max(verdict_.worst_time, std::abs(took_s - expected) - PART * expected);
@@ -195,7 +196,7 @@ double Session::estimate(const Act &act, const geometry::Pose &from) const {
         const bool isStart = b.text.starts_with("M3");
         const bool isCut = b.isMove && !b.settings.isRapid;
         if (isCut && isCutWaiting) {
-            // The first one waits for the spindle, so it begins at rest.
+            // The first move waits for the spindle, so it starts at rest.
             time.stop();
         }
         isCutWaiting = (isCutWaiting || isStart) && !isCut;
@@ -251,7 +252,7 @@ void Session::step_troubles() {
 }
 
 void Session::begin_stop(const Trouble &t) {
-    constexpr int TO_TASK = 4;  // and from there to motion [cycles]
+    constexpr int TO_TASK = 4;  // and from task to motion [cycles]
     const JointDesign &joint = plan_.design.joints[static_cast<std::size_t>(t.joint)];
     JointFaults &pins = rig_->joint_faults[static_cast<std::size_t>(t.joint)];
     Extension &count = verdict_.extensions[fmt::format("stop by {}", name_of(t.what))];
@@ -306,7 +307,7 @@ void Session::begin_stop(const Trouble &t) {
         if (!judge_.mayBeAtRest() && act_->work == Work::PROGRAM) {
             rig_->faults.isProbeClosed = true;
             judge_.stop(Stop::ALONG_THE_PATH, 0);
-            if (rig_->sample().cycle < commanded_ + TO_TASK) {  // task may have these after the stop
+            if (rig_->sample().cycle < commanded_ + TO_TASK) {  // task may process these after the stop
                 judge_.allow(Leave::WORK);
             }
         }
@@ -354,7 +355,7 @@ void Session::begin(const Trouble &t) {
     case Upset::PLANNER_LOST: rig_->hold_planner(true); break;
     default:
         if (act_->work == Work::PROGRAM && !isStopped_) {
-            // Those that come when the program has just ended are commands as any others.
+            // Commands that arrive when the program has just ended are treated as other commands.
             judge_.allow(Leave::WORK);
             commanded_ = rig_->sample().cycle;
             post(messages::SetMode{messages::Mode::MANUAL});

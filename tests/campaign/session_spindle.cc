@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What moved in step with the spindle, judged by the rotor's true angle.
+// Judges motion that is synchronized with the spindle, by the true angle of the rotor.
 #include <algorithm>
 #include <cmath>
 
@@ -81,7 +81,7 @@ void Session::check_sync(const Act &act, End end) {
     }
 }
 
-/// Between gaining and losing speed the tool keeps to one helix, and every pass to the same.
+/// Between acceleration and braking the tool follows one helix, and every pass follows the same helix.
 void Session::check_helix(const SyncWish &sync) {
     const Design &d = plan_.design;
     const std::vector<Pass> passes = passes_of(path_, sync);
@@ -93,7 +93,7 @@ void Session::check_helix(const SyncWish &sync) {
     // A tap is deeper than its helix while the spindle brakes, and less deep as it has reversed. Motion
     // rejects a tap if the expected deviation exceeds 0.1 rev; it knows the ramp with an accuracy of a fifth.
     constexpr double THREAD = 0.001, WORST = 0.12;
-    // What the curves of joints leave of the jerk limits, the judge does not know.
+    // The judge does not know the part of the jerk limits that the curves of joints need.
     const bool isKnown = d.isTrivial || !d.isJerkLimited;
     const double late = isKnown ? std::min(d.off_helix(sync.lead, d.spindle.ramp), WORST) : WORST;
     const double rough = 2.0 / d.spindle.counts_per_turn;
@@ -108,7 +108,7 @@ void Session::check_helix(const SyncWish &sync) {
         for (std::size_t i = p.first; i <= p.last && i + 1 < turns_.size(); ++i) {
             const double way = (path_[i][geometry::AXIS_Z] - sync.from) * sense;
             deepest = std::max(deepest, way);
-            // The rest is for gaining and losing speed; a tap has it behind its end.
+            // The rest is for acceleration and braking; a tap has it after its end.
             if (way > 0.4 * length && (way < 0.6 * length || sync.kind == Sync::TAP)) {
                 helix.add(way / sync.lead - turning * turns_[i + 1]);
             }
@@ -169,7 +169,7 @@ void Session::check_surface(const SyncWish &sync) {
         const auto wish = [&](double at) {
             return std::min(sync.rpm, sync.lead * 1000 / (2 * 3.14159265358979 * std::max(at, 1e-9)));
         };
-        // It follows a place of at most two cycles ago.
+        // The tool follows a spindle angle that is at most two cycles old.
         const double low = wish(path_[i - 1][geometry::AXIS_X] + 2 * (path_[i - 1][geometry::AXIS_X] - x));
         const double high = wish(x);
         worst = std::max({worst, low / rpm_[i] - 1, rpm_[i] / high - 1});

@@ -24,8 +24,8 @@ Products products_at(const StoppingGroup &group, std::size_t n) {
     return p;
 }
 
-/// The least change of the rate [1/sample^2] that all accelerations allow at a sample, driven at `rate` times
-/// the speed that it was driven at: |second rate^2 + first change| <= limit.
+/// The smallest change of the rate [1/sample^2] that all accelerations allow at a sample, at `rate` times the
+/// speed of the original motion: |second rate^2 + first change| <= limit.
 double hardest_brake(const std::vector<StoppingGroup> &groups, std::size_t n, double rate, double period_s) {
     constexpr double STANDING = 1e-24;
     double hardest = -1e300;

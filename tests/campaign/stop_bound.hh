@@ -12,11 +12,12 @@ namespace mw::campaign {
 /// Coordinates whose norm has a limit of acceleration: one joint, one axis, or X Y Z together.
 struct StoppingGroup {
     std::vector<std::vector<double>> places;  ///< of each coordinate, at every sample [unit]
-    double acceleration = 0;                  ///< [unit/s^2]; what was over it as driven counts as allowed
+    double acceleration = 0;                  ///< [unit/s^2]; a larger acceleration of the original motion
+                                              ///< counts as allowed
 };
 
-/// Seconds from the third sample on, by the speed that it has there. The groups have as many samples each.
-/// With `isOver` false the path ends before such a stop.
+/// Time from the third sample to rest [s], from the speed at that sample. The groups have equal numbers of
+/// samples. `isOver` is false if the path ends before such a stop.
 struct LeastStop {
     double seconds = 0;
     bool isOver = false;

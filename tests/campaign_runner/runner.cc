@@ -26,7 +26,7 @@ files::path folder_of(pid_t process) {
     return files::temp_directory_path() / fmt::format("mw_campaign_{}", process);
 }
 
-/// What the process of a session does.
+/// The process of a session.
 [[noreturn]] void work_alone(Campaign &campaign, const Order &order, unsigned seed, const std::string &kept,
                              int out) {
     const auto folder = folder_of(::getpid());
@@ -44,7 +44,7 @@ files::path folder_of(pid_t process) {
     ::_exit(::write(out, line.data(), line.size()) == static_cast<ssize_t>(line.size()) ? 0 : 1);
 }
 
-/// False when nothing came for too long.
+/// False when nothing was received for too long.
 bool read_line(int in, double patience_s, std::string &line) {
     char buffer[4096];
     pollfd waiting{in, POLLIN, 0};
@@ -67,7 +67,7 @@ std::string drive(Campaign &campaign, const Order &order, unsigned seed, const s
     if (::pipe(ends) != 0) {
         return "FAILED no pipe";
     }
-    std::fflush(stdout);  // the child has a copy of what is not written yet
+    std::fflush(stdout);  // the child has a copy of the unwritten data
     const pid_t child = ::fork();
     if (child == 0) {
         ::close(ends[0]);
@@ -120,7 +120,7 @@ void tell_failure(Campaign &campaign, const Order &order, unsigned seed, const s
     std::fflush(stdout);
 }
 
-/// Every `processes`-th seed; how many failed.
+/// Runs every `processes`-th seed; returns the number of failures.
 int work(Campaign &campaign, const Order &order, unsigned part, const std::set<unsigned> &done) {
     const int file = ::open(order.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (file < 0) {
@@ -147,7 +147,8 @@ int work(Campaign &campaign, const Order &order, unsigned part, const std::set<u
     return failed;
 }
 
-/// "# commit ID plan N" heads what a program has added; before there were several plans it named none.
+/// The header "# commit ID plan N" precedes the lines of a program; logs from before there were several plans
+/// name no plan.
 std::set<unsigned> plans_in(const std::string &name) {
     std::set<unsigned> plans;
     std::ifstream file(name);

@@ -32,7 +32,7 @@ class Campaign {
     virtual void print_sum(std::istream &log) const = 0;
 };
 
-/// What is to be run.
+/// The order for a campaign.
 struct Order {
     unsigned first = 1, count = 100, processes = 2;
     std::string log, kept, commit;
@@ -46,8 +46,7 @@ struct Order {
 
 /// Runs the campaign. Returns the exit status: 1 if a rule was violated.
 int run(Campaign &campaign, const Order &order);
-/// The same with the words of a command line that knows its own options, and gets those of the order. 2:
-/// wrong words.
+/// As above, with the words of a command line whose program has its own options. Returns 2 for invalid words.
 int run(Campaign &campaign, options::CommandLine &line, int argc, char **argv);
 
 /// "limit" of "... FAILED limit: joint 0 ..."; empty if no rule was violated.

@@ -18,7 +18,8 @@ class Owner {
     Owner(World &world, unsigned seed, bool isRewiring)
         : world_(world), random_(seed + 13), isRewiring_(isRewiring) {}
 
-    /// What the owner does in this cycle, by what the screen shows and the machine does; nothing: waits.
+    /// The owner's action in this cycle, from the text on the screen and the state of the machine; empty:
+    /// waits.
     std::optional<commissioning::Act> look(int prompt_number, const commissioning::Prompt &prompt,
                                            double now_s);
 
@@ -39,7 +40,7 @@ class Owner {
     double seen_s_ = 0;
     bool isDone_ = false, isReleased_ = false;
     std::size_t held_axis_ = 0;
-    double held_from_ = 0;  ///< where the table was when the button was pressed
+    double held_from_ = 0;  ///< position of the table when the button was pressed
     std::map<std::size_t, double> zero_;
 };
 

@@ -133,7 +133,7 @@ TEST_P(SafetyTest, AProgramThatHangsHasItsMachineSwitchedOff) {
     reach_motion();
     hold_for(cycles(0.3));
     const double before = position();
-    // The machine continues, the program of the steps does not.
+    // The machine remains on, but the program of the steps has ended.
     for (int i = 0; i < cycles(0.6); ++i) {
         commissioner_->machine().cycle();
     }
@@ -145,7 +145,7 @@ TEST_P(SafetyTest, AProgramThatHangsHasItsMachineSwitchedOff) {
         commissioner_->machine().cycle();
     }
     EXPECT_NEAR(position(), stopped, 0.05);
-    // It comes back: nothing switches on or moves by itself, and the step has a fault.
+    // The board is connected again: nothing switches on or moves by itself, and the step has a fault.
     for (int i = 0; i < cycles(2) && !guide().isOver(); ++i) {
         act(Act::Type::HOLD);
         cycle();
@@ -162,7 +162,7 @@ TEST_P(SafetyTest, ALostBoardIsAFault) {
     ASSERT_TRUE(hal().values().set("estop-chain.in1", hal::Value::of_bit(false)).has_value());
     hold_for(cycles(0.5));
     ASSERT_TRUE(guide().isFaulted());
-    // As the session does at a fault.
+    // As the session reacts to a fault.
     commissioner_->stop();
     EXPECT_FALSE(isEnabled());
     EXPECT_EQ(guide().findings()[guide().current()]->fault, commissioning::Fault::STOPPED);

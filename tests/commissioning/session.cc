@@ -22,7 +22,7 @@ namespace {
 using commissioning::Bench;
 using commissioning::Finding;
 
-/// A computer whose servo thread comes late.
+/// A computer whose servo thread is late.
 class LateBench final : public Bench {
   public:
     explicit LateBench(Bench &bench) : bench_(bench) {}
@@ -164,7 +164,7 @@ class Session {
         judge_findings(guide);
     }
 
-    /// One drive at a time, and only while the owner holds the button, with the time to stop.
+    /// Only one drive is on, and only while the owner holds the button, plus the time to stop.
     void judge_motion(const std::vector<double> &before, const std::string &text) {
         constexpr double STOPPING_S = 1.0, MOVED_MM = 0.005;
         for (std::size_t i = 0; i < before.size(); ++i) {
@@ -172,7 +172,7 @@ class Session {
                 fail("held", fmt::format("{} moves without the button in {}", truth_.axes[i].letter, text));
             }
         }
-        // Pins are read now and then: it takes time.
+        // Pins are read only at intervals, because reading takes time.
         if (++cycles_ % 10 == 0 && world_.count_enabled() > 1) {
             fail("alone", "more than one drive is enabled in " + text);
         }
@@ -272,7 +272,7 @@ class Session {
         }
     }
 
-    /// A machine whose world moves with each cycle.
+    /// A machine whose simulated environment advances with each cycle.
     class WatchedMachine final : public programs::MachineAccess {
       public:
         WatchedMachine(machine::Machine &machine, World &world) : machine_(machine), world_(world) {}
@@ -368,7 +368,7 @@ class Session {
                     return fail("drive", fmt::format("{} is at {} instead of {}", truth_.axes[i].letter,
                                                      command, wanted[i]));
                 }
-                // Within 0.1 % of the travel, and the play.
+                // Within 0.1 % of the travel, and the backlash.
                 const double off = std::abs(world_.table(i) - command - before[i]);
                 const double allowed = 0.001 * 400 + truth_.axes[i].backlash;
                 if (off > allowed) {
@@ -382,7 +382,7 @@ class Session {
         }
     }
 
-    /// The table comes back to the same count each time.
+    /// The table returns to the same count each time.
     void compare_homes(std::vector<double> &homes) {
         for (std::size_t i = 0; i < truth_.axes.size(); ++i) {
             const TrueAxis &axis = truth_.axes[i];

@@ -58,7 +58,7 @@ class Maker {
     }
     void answer(const std::string &key, const std::string &value) { machine_.answers[key] = value; }
 
-    /// What is usually wrong: another screw, other microsteps, or a little.
+    /// The usual error of the first values: another screw, other microsteps, or a small deviation.
     double factor() {
         constexpr std::array USUAL{0.5, 2.0, 0.4, 1.6, 1.27};
         return chance(0.4) ? USUAL[random_() % USUAL.size()] : between(0.85, 1.18);
@@ -78,7 +78,7 @@ class Maker {
         axis.backlash = chance(0.3) ? 0 : between(0.01, 0.12);
         const bool at_max = letter == 'Z' || is_lathe;
         const double length = believed_length * between(0.8, 1.2);
-        // In a frame whose zero is anywhere.
+        // In a coordinate system with an arbitrary zero.
         axis.lower_end = between(-500, 500);
         axis.upper_end = axis.lower_end + length;
         axis.switch_above = at_max;

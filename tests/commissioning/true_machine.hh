@@ -37,7 +37,7 @@ struct TrueAxis {
     double backlash = 0;           ///< [mm]
     double peak_acceleration = 0;  ///< of a stepper [mm/s2]
     double fastest = 0;            ///< of a stepper [mm/s]
-    double full_rev_s = 50;        ///< of a servo drive at 10 V; negative: it turns the other way
+    double full_rev_s = 50;        ///< of a servo drive at 10 V; negative: it turns in the other direction
     double lag_s = 0.01;
 };
 
@@ -49,8 +49,8 @@ struct TrueMachine {
     std::vector<TrueAxis> axes;
     double spindle_full_rpm = 0;
     bool isProbeOpening = false;
-    bool isRaised = false;   ///< the owner raises speed and acceleration as well
-    setup::Answers answers;  ///< what the owner believes
+    bool isRaised = false;   ///< the owner also raises speed and acceleration
+    setup::Answers answers;  ///< the values that the owner assumes
 };
 
 /// Seeds above FIRST_TROUBLE have a fault.

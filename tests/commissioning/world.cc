@@ -82,7 +82,7 @@ std::string World::physics_text() const {
         const char name = small(axis.letter);
         const bool connected = machine_.trouble != Trouble::MOTOR_NOT_CONNECTED || machine_.trouble_axis != i;
         const bool wired = machine_.trouble != Trouble::SWITCH_NOT_CONNECTED || machine_.trouble_axis != i;
-        // The last channels of the boards have no motor of the machine.
+        // The last channels of the boards have no motor.
         const std::size_t channel = connected ? i : 4;
         const double turn = axis.travel_per_rev;
         const double start_rev = motors_[i] / turn;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The simulated machine around the controller: what moves, what is touched, and what instruments show. It
-// knows the pins of the boards, and nothing of the commissioning library.
+// The simulated machine around the controller: motors, switches and the readings of instruments. It uses the
+// pins of the boards, and nothing of the commissioning library.
 #pragma once
 
 #include <functional>
@@ -19,11 +19,11 @@ class World {
   public:
     World(const TrueMachine &machine, std::string folder);
 
-    /// Before a start of the controller: makes the hardware behind the files, in its current positions. The
-    /// INI file to start.
+    /// Before a start of the controller, creates the hardware for the files in its current positions. Returns
+    /// the INI file to start.
     Result<std::string> prepare(const std::string &ini);
     void connect(machine::Machine &machine) { controller_ = &machine; }
-    /// After each task cycle.
+    /// Called after each task cycle.
     void step();
 
     std::size_t find_axis(char letter) const;
@@ -42,7 +42,7 @@ class World {
     void touch_probe(bool isTouched);
 
   private:
-    /// The input at which the switch of an axis is.
+    /// The input to which the switch of an axis is connected.
     std::size_t switch_place(std::size_t axis) const;
     bool isPort() const { return machine_.board == Board::PARPORT; }
     std::string port_text() const;

@@ -27,7 +27,7 @@ PIECE = 250
 
 
 def answers_of(made):
-    """Answers of the forms; null is a number that was not typed."""
+    """Answers of the forms; null is a number that was not entered."""
     lines = ''.join(json.dumps({key: case[key] for key in ('job', 'facts', 'dxf')}) + '\n' for case in made)
     done = subprocess.run(['node', str(MAKER)], input=lines, capture_output=True, text=True, timeout=300, check=False)
     if done.returncode != 0:
@@ -40,7 +40,7 @@ def faults_of(answer):
     return [f'job.{field}: {fault["key"]}' for field, fault in answer['jobFaults'].items()] + steps
 
 
-# Contours that are too narrow for the tool, or too near to each other, are rejected rightly.
+# Contours that are too narrow for the tool, or too close to each other, are rejected correctly.
 RIGHTLY = {'fault.tight', 'fault.no_room', 'fault.gouge', 'fault.no_entry'}
 
 

@@ -218,7 +218,7 @@ def make(seed):
 
 
 def plant(case, maker):
-    """One value becomes impossible; `expect` names the fields at one of which it has to be rejected."""
+    """One value becomes impossible; `expect` names the fields at one of which it must be rejected."""
     r, job = maker.random, case['job']
     step = job['steps'][0]
     v, kind = step['values'], step['type']
@@ -267,7 +267,7 @@ def plant_in_job(case, r):
 
 
 def wild(case, maker):
-    """Some numbers of any size."""
+    """Some numbers of arbitrary size."""
     r = maker.random
     v = case['job']['steps'][0]['values']
     numeric = [name for name, value in v.items() if isinstance(value, (int, float)) and name != 'tool']

@@ -57,7 +57,7 @@ def corners(r, centre, d):
 
 
 def rounded(r, layer, centre, d):
-    """As one polyline with bulges, in either direction, of either type."""
+    """As one polyline with bulges, in either direction and of either type."""
     ends, pieces, _ = corners(r, centre, d)
     bulge = math.tan(math.radians(90 / 4))
     vertices = [v for a, b in ends for v in ((*a, 0.0), (*b, bulge))]

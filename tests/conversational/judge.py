@@ -7,7 +7,7 @@ import numpy as np
 import shapes
 from stock import Judge, Stock
 
-# The interpreter prints four decimals, of ends and centres: in inches that is coarse.
+# The interpreter prints ends and centres with four decimals, which is coarse in inches.
 SLACK = {'mm': 0.003, 'inch': 0.00025}
 MOST_MOVES = 60000
 HOLES = {'drill', 'tap', 'bore'}
@@ -131,7 +131,7 @@ def direction_faults(kind, v, moves, slack):
 
 
 def judge_operation(kind, v, moves, unit, pieces=None, pitches=None):
-    """The faults that are found, as texts, and figures."""
+    """The faults that were found, as texts, and figures."""
     faults = []
     states(kind, v, moves, faults)
     faults += direction_faults(kind, v, moves, SLACK[unit])
@@ -174,7 +174,7 @@ def texts_of(wrongs, x, y, height, away):
 
 
 def side_of(v, x, y, contours):
-    """Distance from the nearest contour, and whether the point is on the side of the tool of it. Open contours: by the nearest piece."""
+    """Distance from the nearest contour, and whether the point is on its tool side. For open contours, the nearest piece decides."""
     flat = [piece for one in contours for piece in one]
     away = shapes.curve_distance(x, y, flat)
     if v['side'] == 'on':

@@ -81,7 +81,7 @@ class Judge:
     def depth(self, move, x, z, at):
         v, slack = self.v, self.bar.slack
         if self.kind in WIDE:
-            # Each cut is one feed move from where the one before has ended.
+            # Each cut is one feed move from the end of the previous cut.
             if move.end[0] < move.start[0]:
                 deepest = float(np.max(self.bar.radius[at])) - move.end[0]
                 if deepest > v['peck'] + v['clearance'] + slack:
@@ -164,7 +164,8 @@ def thread_faults(v, moves, slack):
         return ['no thread is cut']
     for m in moves:
         lowest = min((m.start[0]) * sign, (m.end[0]) * sign)
-        isPullOut = m.end[2] == m.start[2] and (m.end[0] - m.start[0]) * sign > 0  # G76 ends each pass so
+        # G76 ends each pass in this way
+        isPullOut = m.end[2] == m.start[2] and (m.end[0] - m.start[0]) * sign > 0
         if m.kind == 'rapid' and not isPullOut and lowest < crest * sign - slack and min(m.start[2], m.end[2]) < v['z_start'] - slack:
             faults.append(f'rapid move in the thread: {m.start} {m.end}')
     deepest = min(m.end[0] * sign for m in cuts) * sign

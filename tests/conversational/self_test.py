@@ -69,7 +69,7 @@ def stopped_spindle(program, v):
     return re.sub(r'^(G9[67] .*) M3$', r'\1 M5', program, flags=re.M)
 
 
-# Which changes each type of operation has to notice.
+# The changes that must be detected for each type of operation.
 CHANGES = {
     deeper: ['face', 'rect_pocket', 'round_pocket', 'slot', 'rect_boss', 'round_boss', 'drill', 'tap', 'bore', 'engrave', 'contour', 'thread_mill'],
     shallower: ['face', 'rect_pocket', 'round_pocket', 'slot', 'rect_boss', 'round_boss', 'drill', 'tap', 'bore', 'engrave', 'contour', 'thread_mill'],

@@ -30,7 +30,7 @@ def capsule(x, y, a, b, radius):
 
 
 def curve_distance(x, y, pieces):
-    """From lines (a, b) and arcs (centre, radius, from, to anticlockwise, in degrees)."""
+    """Shape of lines (a, b) and arcs (centre, radius, from, to anticlockwise, in degrees)."""
     least = np.full(np.shape(x), np.inf)
     for one in pieces:
         if one[0] == 'line':

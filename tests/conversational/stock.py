@@ -21,7 +21,7 @@ class Stock:
         self.probe_x = self.probe_y = self.probe_height = np.zeros(0)
 
     def add_probes(self, distance, off):
-        """Points at `off` on both sides of the wall, where the distance from it is 0: a wall is judged as exactly as that."""
+        """Points at distance `off` on both sides of the wall, where the signed distance is 0: a wall is judged with this accuracy."""
         away = distance(self.x, self.y)
         isNear = np.abs(away) < 1.5 * self.cell
         x, y = self.x[isNear], self.y[isNear]

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-# What its package puts in /usr/bin, and its realtime modules that are not ours.
+# The programs that its package installs in /usr/bin, and its realtime modules that we do not have.
 PROGRAMS = '''5axisgui axis axis-remote classicladder debuglevel elbpcom genserkins gladevcp gladevcp_demo gmoccapy gremlin_view gs2_vfd
 gscreen hal-histogram hal_input hal_manualtoolchange halcmd halcmd_twopass halcompile halmeter halreport halrmt halrun halsampler halscope
 halshow halstreamer haltcl halui hbmgui hexagui hy_gt_vfd hy_vfd image-to-gcode inivar io iov2 latency-histogram latency-plot latency-test
@@ -31,7 +31,7 @@ def main():
     asked = [f'loadusr {name}' for name in absent] + [f'loadrt {name}' for name in MODULES if not (modules / f'{name}.so').exists()]
     failed = 0
     with tempfile.TemporaryDirectory(prefix='mw_absent_') as folder:
-        # No program of an installed LinuxCNC is found, and so none is started.
+        # No program of an installed LinuxCNC is found, so none is started.
         env = {**os.environ, 'PATH': str(programs), 'MILLWRIGHT_INSTANCE': f'absent-{os.getpid()}', 'LC_ALL': 'C'}
         file = pathlib.Path(folder, 'absent.hal')
         file.write_text('\n'.join(asked) + '\n')
@@ -40,7 +40,7 @@ def main():
         told = {int(m[1]): m[2] for m in re.finditer(r'absent\.hal:(\d+)(?::\d+)?: (.*)', done.stderr)}
         for line, words in enumerate(asked, 1):
             said = told.get(line, '')
-            # It names the thing and has a hint.
+            # It names the missing program and has a hint.
             if words.split()[1] not in said or not re.search(r'\([^()]{30,}', said):
                 failed += 1
                 print(f'FAIL {words}: {said!r}')

@@ -22,7 +22,7 @@ def check(condition, what):
 
 
 def start_board(model):
-    """The process and its address; a port that another process has is tried again."""
+    """The process and its address. If another process uses the port, another port is tried."""
     for port in range(27300, 27400):
         process = subprocess.Popen([hm2_board, '--listen', f'127.0.0.1:{port}', '--model', model], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         if process.stdout.readline().startswith('hm2-board: '):

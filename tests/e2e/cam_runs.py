@@ -52,7 +52,7 @@ def ini_text(axes, scale):
 
 
 def run(millwright, program, is_inch, folder):
-    """What went wrong, or nothing."""
+    """The fault, or an empty text."""
     scale = 1 / 25.4 if is_inch else 1.0
     offsets = LATHE_OFFSETS if program.kind == 'lathe' else OFFSETS
     folder.mkdir()
@@ -78,7 +78,7 @@ def run(millwright, program, is_inch, folder):
 
 
 def verdicts_of(log):
-    """Seed -> what went wrong (nothing when it passed), of the programs a log holds."""
+    """Seed -> fault (empty when it passed), for the programs in a log."""
     if log is None or not log.exists():
         return {}
     lines = [line.split('\t') for line in log.read_text().splitlines() if not line.startswith('#')]

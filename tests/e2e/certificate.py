@@ -43,7 +43,7 @@ def coordinate(certificate, kind, name):
 
 
 def check_line(mill):
-    """A long rapid takes all of velocity and acceleration; line 4 of the file."""
+    """A long rapid uses the full velocity and acceleration; line 4 of the file."""
     done, found = mill.run('line', 'G64 P0.01\nG53 G1 Y10 F600\nG53 G0 X120\nG53 G1 X110 F600\nM2\n')
     expect(done.returncode == 0, 'the program runs', done)
     expect(found['format'] == 'millwright motion certificate' and found['version'] == 1, 'format and version', found)
@@ -65,7 +65,7 @@ def check_line(mill):
 
 
 def check_corner(mill):
-    """A corner takes all of P; one in G61 nothing."""
+    """A corner uses all of P; a corner in G61 uses nothing."""
     done, found = mill.run('corner', 'G61\nG53 G1 X0 Y0 Z60 F6000\nG64 P0.05\nG53 G1 X40\nG53 G1 Y40\nG61\nG53 G1 X0\nG53 G1 Y0\nM2\n')
     expect(done.returncode == 0, 'the program runs', done)
     largest = found['deviation']['largest_ratio']
@@ -86,7 +86,7 @@ def check_no_tolerance(mill):
 
 
 def check_ends(mill):
-    """A run that stops is certified up to there; a file that cannot be written is an error."""
+    """A run that stops is certified up to the stop; a file that cannot be written is an error."""
     old = mill.folder / 'stopped.json'
     old.write_text('{"old": true}')
     done, found = mill.run('stopped', 'G64 P0.01\nG53 G1 X20 F3000\nG53 G1 X2000\nM2\n', '--no-check')

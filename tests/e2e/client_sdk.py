@@ -21,7 +21,7 @@ def run(*words, **options):
 
 
 def exchange(program, config):
-    """The receiver makes the channel, then the other process sends."""
+    """The receiver creates the channel, then the other process sends."""
     with subprocess.Popen([program, config, 'receive'], stdout=subprocess.PIPE, text=True) as receiver:
         first = receiver.stdout.readline()
         run(program, config, 'send', '3', '1.5')

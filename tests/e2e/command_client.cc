@@ -24,14 +24,14 @@ namespace {
 constexpr double STEP_S = 40;
 constexpr double LEAST_MOVE_MM = 1e-6;
 
-/// What became of a command; times since it was posted.
+/// The result of a command, with times since it was posted.
 struct Course {
     bool isDone = false;
     std::string reason;
     std::int64_t taken_ns = -1, motion_ns = -1;
 };
 
-/// One of the two ways to a machine.
+/// One of the two connections to a machine.
 class Way {
   public:
     virtual ~Way() = default;
@@ -115,7 +115,7 @@ class ByNml final : public Way {
     nml::Vocabulary vocabulary_ = nml::Vocabulary::standard();
     nml::LocalPlaces local_;
     std::unique_ptr<nml::Channel> commands_, statuses_;
-    mutable std::optional<nml::Message> message_;  ///< looking at one may change it
+    mutable std::optional<nml::Message> message_;  ///< reading a message may change it
 };
 
 class ByMailbox final : public Way {
@@ -186,7 +186,7 @@ void tell(const char *what, std::vector<std::int64_t> times) {
     fmt::print("{}: median {:.2f} ms, 99 % {:.2f} ms, most {:.2f} ms\n", what, at(500), at(990), at(1000));
 }
 
-/// Short moves to and fro.
+/// Short moves back and forth.
 bool measure(Way &way, int count) {
     std::vector<std::int64_t> taken, motion;
     for (int i = 0; i < count; ++i) {

@@ -23,7 +23,7 @@ def commission(*words, given=''):
 
 
 def operate(folder, measured):
-    """Answers each prompt as it appears. `measured`: factor of the true travel."""
+    """Answers each prompt when it appears. `measured`: factor of the true travel."""
     moved, prompts, lines = 0.0, [], []
     with subprocess.Popen([millwright, 'commission', 'check', folder, '--simulate', '--fast'], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, bufsize=1) as process:

@@ -51,7 +51,7 @@ class Steps:
             time.sleep(0.05)
 
     def pin(self, name):
-        """Nothing: the realtime process is gone."""
+        """Nothing, because the realtime process has ended."""
         done = subprocess.run([halcmd, 'getp', name], capture_output=True, text=True, check=False, env=self.env, timeout=10)
         return done.stdout.strip() if done.returncode == 0 else None
 
@@ -83,7 +83,8 @@ def terminate(steps):
 with tempfile.TemporaryDirectory() as place:
     folder = pathlib.Path(place) / 'lathe'
     subprocess.run([millwright, 'commission', 'write', folder, 'kind=lathe', 'drives=stepper', 'board=parport', 'pin.estop=0'], check=True, capture_output=True)
-    # The thread of a busy test computer may be late: the steps before the first motion are done in virtual time.
+    # The thread of a busy test computer may be late, so the steps before the first motion run in virtual
+    # time.
     subprocess.run([millwright, 'commission', 'check', folder, '--simulate', '--fast'], input='confirm\n', text=True, check=False, capture_output=True, timeout=120)
     for number, lose in enumerate((close_input, hang, kill, terminate)):
         steps = Steps(folder, f'commission-losses-{os.getpid()}-{number}')

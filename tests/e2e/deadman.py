@@ -31,7 +31,7 @@ FOUND = Findings()
 
 
 def jogger(port, sign, pipe, style):
-    """A separate process: renews until it gets the command how to end, and reports the time of its last renewal."""
+    """A separate process: renews until it receives the command that ends it, and reports the time of its last renewal."""
     screen = Screen(port)
     screen.until(lambda: 'joints' in screen.status)
     fields = {'is_joint': False, 'index': 0, 'velocity': sign * SPEED, 'lease_ms': LEASE_MS}
@@ -42,7 +42,8 @@ def jogger(port, sign, pipe, style):
         screen.ask('JogContinuous', is_renewal=True, **fields)
         last = time.monotonic()
     end = pipe.recv()
-    if style == 'silent':  # it can wait for the answer to its last renewal: the lease counts from there
+    # the process may be waiting for the answer to its last renewal, from which the lease counts
+    if style == 'silent':
         number = screen.last_id
         screen.until(lambda: number in screen.outcomes, 0.09)
         last = time.monotonic()
@@ -101,7 +102,7 @@ def still_on(port):
 
 
 def read_log(path):
-    """The cuts of before, by their number."""
+    """The cuts of an earlier run, by their number."""
     lines = path.read_text().splitlines() if path is not None and path.exists() else []
     return {line['number']: line for line in map(json.loads, lines)}
 
@@ -124,7 +125,7 @@ def judge(bench, cuts, seed, slack, log):
     for number in range(cuts):
         if number in done:
             continue
-        watch.samples = watch.samples[-1:]  # what begins at once lies behind a sample, too
+        watch.samples = watch.samples[-1:]  # a motion that begins at once is seen only in a later sample, too
         found = len(FOUND.failures)
         result = one_cut(watch, port, random.Random(f'{seed} {number}'), number, slack)
         if log is not None:

@@ -64,7 +64,7 @@ class Files:
         self.write(lines, at, name)
 
 
-# The change, and the expected finding. The seed chooses JOINT and AXIS.
+# The change and the expected finding. The seed chooses JOINT and AXIS.
 SETTINGS = [
     ('JOINT', 'MIN_LIMIT', '900', 'above'), ('JOINT', 'HOME', '9999', 'outside'), ('JOINT', 'MAX_VELOCITY', '0', 'above 0'),
     ('JOINT', 'MAX_VELOCITY', 'fast', 'not a number'), ('JOINT', 'MAX_ACCELERATION', '1,5', 'not a number'),
@@ -117,7 +117,7 @@ def damages(random_source, typing_errors):
 
 
 def mistype(files, random_source):
-    """A key of four letters or more loses a letter, gets a wrong one, or has two in the wrong order."""
+    """A key of four letters or more loses a letter, has a wrong letter, or has two letters exchanged."""
     lines = files.lines()
     known = [i for i, line in enumerate(lines) if re.match(r'[A-Z_]{4,} =', line) and not re.match(r'(HALFILE|HOME|COORD|KINEM|JOINTS)', line)]
     at = random_source.choice(known)
@@ -165,7 +165,7 @@ def main():
             what = f'{key} written {wrong}'
             hits = [line for line in told if wrong in line and files.line in line] or [line for line in told if 'misspelling' in line and wrong in line]
         else:
-            # Where two lines contradict each other either may be named.
+            # Where two lines contradict each other, the finding may name either.
             hits = [line for line in told if (text or '') in line and (text is None or not files.line or files.line in line or 'mill_mm.ini' in line)]
         if hits:
             found += 1

@@ -20,7 +20,7 @@ from modbus_slave import FAILED, expect, serve_rtu
 
 
 class Drive:
-    """Registers; the frequency follows the last command, of which each change is kept in `told`."""
+    """Registers; the frequency follows the last command, and each change of a command is recorded in `told`."""
 
     def __init__(self, speed):
         self.registers, self.told, self.speed, self.is_silent, self.follows = collections.defaultdict(int), [], speed, False, True
@@ -65,7 +65,7 @@ class Vfdb(Drive):
 
 
 class Hal:
-    """A HAL with the component, as long as `with` lasts."""
+    """A HAL with the component, for the duration of `with`."""
 
     def __init__(self, programs, folder, drive, program, words):
         self.programs, self.folder = programs, folder

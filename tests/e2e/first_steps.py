@@ -67,7 +67,7 @@ def add_counters(folder, joints, pins):
 
 
 def check_way(bench, what, ini, trace, axes):
-    """Every sample is inside the limits, and each axis has moved through at least a fourth of its travel."""
+    """Every sample is within the limits, and each axis has moved through at least a fourth of its travel."""
     with trace.open() as lines:
         rows = list(csv.DictReader(lines))
     for letter in dict.fromkeys(axes):
@@ -79,7 +79,7 @@ def check_way(bench, what, ini, trace, axes):
 
 
 def check_pulses(bench, what, ini, last, output, joints):
-    """From the start of the motor to its end: what it went since homing, and the place where it was homed."""
+    """From the start of the motor to its end: its travel since homing, and the position at which it was homed."""
     counts = [int(number) for number in re.findall(r'steps (-?\d+)', output)]
     bench.expect(len(counts) == joints, f'{what}: {joints} counts', output)
     for joint, count in enumerate(counts):
@@ -98,7 +98,7 @@ def check_machine(bench, kind, drives, units, switches, board=''):
     axes = KINDS[kind]
     bench.expect(ini['KINS']['JOINTS'] == str(len(axes)) and ini['TRAJ']['COORDINATES'].replace(' ', '') == axes, f'{what}: joints')
     bench.expect(ini['TRAJ']['LINEAR_UNITS'] == units, f'{what}: unit')
-    # A motor that homes without moving has counted nothing; one with a switch has moved to it.
+    # A motor that homes without moving has counted nothing; a motor with a switch has moved to it.
     is_counted = board == 'parport' and switches == 'none'
     if is_counted:
         names = ['x', 'y', 'y2', 'z'] if kind == 'gantry' else list(axes.lower())

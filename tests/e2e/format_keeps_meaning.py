@@ -19,7 +19,7 @@ import interp_programs  # noqa: E402
 
 def output(program, folder):
     done = subprocess.run([RS274, '-g', str(program)], cwd=folder, capture_output=True, timeout=60, check=False)
-    # Messages name the block, which is written differently: where there is one counts, not its second line.
+    # Messages quote the block, which is formatted differently: the position counts, not the second line.
     return done.stdout, done.returncode, done.stderr.splitlines()[-2:-1]
 
 

@@ -45,7 +45,7 @@ class Runner:
 
     @staticmethod
     def end_length(calls):
-        """How many calls M2 has made."""
+        """The number of calls that M2 has made."""
         starts = [i for i, call in enumerate(calls) if call.startswith('SET_G5X_OFFSET(1,')]
         return len(calls) - starts[-1] if starts and 'PROGRAM_END()' in calls else 0
 

@@ -48,7 +48,7 @@ def main():
             ini = machine / 'case.ini'
             ini.write_text(plain.replace('[HAL]\n', '[HAL]\n' + two_pass).replace(
                 'HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\n' + hal_lines))
-            # Until the end of its output: a program of loadusr that is left running would hold that open.
+            # Until the end of its output, which a program of loadusr that is left running would keep open.
             done = subprocess.run([millwright, 'run', str(ini), str(machine / 'part.ngc'), *mode], capture_output=True,
                                   env=dict(os.environ, MILLWRIGHT_INSTANCE=f'hal-files-{os.getpid()}'), cwd=folder,
                                   text=True, check=False, timeout=60)

@@ -61,7 +61,7 @@ class Library:
         self.failures = 0
 
     def run(self, what, files, program, expected, **given):
-        """Files of [HAL], a program, and a pattern that must be in the output, or (pattern that must not be)."""
+        """Files of [HAL], a program, and a pattern that the output must contain (or must not contain)."""
         settings = dict(coordinates='XYZ', kinematics='trivkins', joints=3, motmod='', search=0, latch=0, sequence=0, home=0, low=-200, extra='', hal='', servo='')
         settings.update(given)
         with tempfile.TemporaryDirectory() as place:

@@ -22,7 +22,7 @@ class Watch(threading.Thread):
         super().__init__(daemon=True)
         sys.path.insert(0, str(library))
         os.environ.update(env)
-        import hal  # of the build, for the instance of the machine
+        import hal  # programs of the build, for the instance of the machine
         self.component = hal.component(f'watch{os.getpid()}')
         self.pin = self.component.newpin('position', hal.HAL_FLOAT, hal.HAL_IN)
         self.component.newpin('servo-s', hal.HAL_FLOAT, hal.HAL_IN)
@@ -37,8 +37,8 @@ class Watch(threading.Thread):
             time.sleep(SAMPLE_S)
 
     def servo_time(self, when):
-        """Of a moment by the computer's clock: between the samples before and after it, which may be far apart where the
-        computer is busy."""
+        """Position at a time of the computer's clock, between the samples before and after it, which may be far apart on a busy
+        computer."""
         before = max((one for one in self.samples if one[2] <= when), key=lambda one: one[2], default=None)
         after = min((one for one in self.samples if one[2] > when), key=lambda one: one[2], default=None)
         if before is None or after is None:
@@ -50,13 +50,13 @@ class Watch(threading.Thread):
 
 
 def last_motion(samples):
-    """When it moved last, by the samples."""
+    """Time of the last movement, by the samples."""
     moved = [b[0] for a, b in zip(samples, samples[1:]) if abs(b[1] - a[1]) > 1e-7]
     return moved[-1] if moved else None
 
 
 def begin_of_braking(samples, speed):
-    """First sample from which on it is slower than its speed for good."""
+    """First sample after which the joint remains below its speed."""
     fast = [b[0] for a, b in zip(samples, samples[1:]) if b[0] > a[0] and abs(b[1] - a[1]) / (b[0] - a[0]) > 0.9 * speed]
     return fast[-1] if fast else None
 

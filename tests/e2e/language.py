@@ -75,13 +75,13 @@ def check_names_in_path(programs, folder):
                             (['halcompile', '--help'], 'erzeugt HAL-Komponenten')):
             said = output(words, path, folder / 'elsewhere')
             expect(text in said[0], f'{words[0]} by its name in {place.name}', said)
-    # A name that is no path, as a shell's exec -a gives it.
+    # A name without a path, as a shell's exec -a passes it.
     said = output(['bash', '-c', f'exec -a linuxcnc {programs}/linuxcnc -h'], GERMAN, folder / 'elsewhere')
     expect('Aufruf: linuxcnc' in said[0], 'linuxcnc by another name', said)
 
 
 def check_machine_read(programs, root, folder):
-    """The same bytes in every language, also where something is wrong."""
+    """The same bytes in every language, also for faulty input."""
     program = folder / 'run.ngc'
     program.write_text('G21 G17\nG43 H99\nG1 X10 F100\nM2\n')
     ini = root / 'configs/sim/mill_mm.ini'
@@ -94,7 +94,7 @@ def check_machine_read(programs, root, folder):
 
 
 def check_clients(programs, root, folder):
-    """The machine speaks English; of its clients one reads German, another Spanish."""
+    """The machine uses English; one of its clients reads German, another Spanish."""
     mill = Mill(str(programs / 'millwright'), str(programs / 'halcmd'), root, folder, 'language')
     modules = {**mill.env, 'PYTHONPATH': str(programs.parent / 'lib/python')}
     for name in ('LANG', 'LANGUAGE', 'LC_ALL', 'LC_MESSAGES'):

@@ -17,13 +17,13 @@ FOUND = Findings()
 expect = FOUND.expect
 VARIABLES = ('LANG', 'LANGUAGE', 'LC_ALL', 'LC_MESSAGES')
 PLAIN = {name: value for name, value in os.environ.items() if name not in VARIABLES}
-# No locale of these is generated on a fresh Debian, which has only C.UTF-8.
+# A fresh Debian has no generated locale for these languages, only C.UTF-8.
 GERMAN = ({'LANG': 'de_DE.UTF-8'}, {'LC_ALL': 'de_AT', 'LANG': 'es_ES.UTF-8'}, {'LC_MESSAGES': 'de_DE.UTF-8', 'LANG': 'C'}, {'LANGUAGE': 'de:es', 'LANG': 'en_US.UTF-8'})
 SPANISH = ({'LANG': 'es_ES.UTF-8'}, {'LC_ALL': 'es', 'LANG': 'de_DE.UTF-8'}, {'LC_MESSAGES': 'es_ES.UTF-8', 'LANG': 'C'}, {'LANGUAGE': 'es:de', 'LANG': 'en_US.UTF-8'})
 ENGLISH = ({}, {'LANG': 'C.UTF-8'}, {'LANG': 'en_GB.UTF-8'}, {'LC_ALL': 'C', 'LANG': 'de_DE.UTF-8'}, {'LANG': 'C.UTF-8', 'LANGUAGE': 'de'})
 # Tools of the build and of tests, which are not installed.
 NOT_INSTALLED = {'reference_pages', 'hal_tcl_test'}
-# Words of English that help has, and that neither of the others has.
+# English words that occur in the help, and in neither of the other languages.
 ENGLISH_WORDS = re.compile(r'\b(the|of|and|with|is|are|which|this|its|from|to|for|usage|not|default|by|other)\b')
 PLACE = re.compile(r'[\w.]+:\d+:\d+: ')
 
@@ -88,7 +88,7 @@ FILES = {
                  'for call in (lambda: h.newpin("a", hal.HAL_BIT, hal.HAL_IN), lambda: h["nosuch"], lambda: hal.component("c"), lambda: hal.get_value("nosuch")):\n'
                  '    try:\n        call()\n    except Exception as error:\n        print(type(error).__name__, error)\nh.exit()\n',
 }
-# What scripts read.
+# The output that scripts read.
 READ_BY_SCRIPTS = ('list pin', 'list sig', 'list comp and2', 'list funct', 'list thread', 'show pin', 'show sig', 'show param and2*', 'show funct', 'show thread', 'show comp and2', 'show alias',
                    '-s show pin', '-s show sig', '-s show funct', '-s show thread', '-s show comp and2', '-s list pin', 'getp and2.0.in0', 'ptype and2.0.in0', 'gets o', 'stype o', 'save', 'save all',
                    'save net', '-s save all', 'status lock', '-s status lock', 'status mem', '-v setp and2.1.in0 1', '-V setp and2.1.in0 0', '-v newsig o bit', '-s setp nosuch 1', '-k getp nosuch')
@@ -102,7 +102,7 @@ def run(words, languages, folder, programs, **more):
 
 
 def check_help(programs, folder):
-    """Of each program, in each of the ways in which a language is asked for."""
+    """Each program, with each method of selecting a language."""
     names = sorted({path.name for path in programs.iterdir()} - NOT_INSTALLED)
     expect(len(names) > 20, 'the programs are found', names)
     helps = [[name, '--help'] for name in names] + [['halcmd', '-h'], ['halrun', '-h'], ['halcmd', '-h', 'net'], ['halcmd', '-h', 'loadusr']]
@@ -122,7 +122,7 @@ def check_help(programs, folder):
 
 
 def check_hal_errors(programs, folder):
-    """In a file: the place is the same, the text is translated, and so is the exit status."""
+    """Errors in a file: the position is the same, the text is translated, and the exit status is the same."""
     path = folder / 'errors.hal'
     path.write_text(PREPARED + '\n'.join(error[0] for error in HAL_ERRORS) + '\n')
     said = [run('halrun -k errors.hal', way, folder, programs) for way in (ENGLISH[0], GERMAN[0], SPANISH[0])]

@@ -52,7 +52,7 @@ CALL = re.compile(r'(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED|DWELL)\(([^)]*)\)'
 
 
 class Stroke:
-    """A line or an arc from place to place (z, x); `turn`: 1 counterclockwise from Z to X, -1 clockwise, 0 for a line."""
+    """A line or an arc between two points (z, x); `turn`: 1 counterclockwise from Z to X, -1 clockwise, 0 for a line."""
 
     def __init__(self, start, end, centre=None, turn=0):
         self.start, self.end, self.centre, self.turn = start, end, centre, turn
@@ -132,7 +132,7 @@ def contour_of(text):
 
 
 def cycles_of(text):
-    """(code, what each of its passes leaves)"""
+    """(code, allowance that each of its passes leaves)"""
     out = []
     for line in text.upper().splitlines():
         words = dict(WORD.findall(line))
@@ -151,7 +151,7 @@ def rounded(text, digits):
 
 
 def with_dwells(text):
-    """The program with a dwell in front of each cycle, which tells their moves apart."""
+    """The program with a dwell before each cycle, which separates their moves."""
     return re.sub(r'^(?=[ \t]*G7[0-2][.\d]*\s*Q)', 'G4 P0.01\n', text, flags=re.I | re.M)
 
 
@@ -185,7 +185,7 @@ class Contour:
         self.behind = [-z for z, _ in self.places]
 
     def height(self, z):
-        """The highest at `z`, as a line between the samples beside it."""
+        """The highest point at `z`, interpolated between the adjacent samples."""
         after = bisect.bisect_left(self.behind, -z - 1e-12)
         if after in (0, len(self.places)):
             return -math.inf
@@ -194,24 +194,24 @@ class Contour:
         return max(best, x1 if z0 == z1 else x0 + (z - z0) / (z1 - z0) * (x1 - x0))
 
     def clearance(self, place):
-        """To the contour; below 0 in the part."""
+        """Distance to the contour; negative in the part."""
         near = min(stroke.distance(place) for stroke in self.strokes)
         return -near if place[1] < self.height(place[0]) and near > 1e-5 else near
 
 
 def offs(contour, run, level):
-    """How far the places of a run of moves are above the contour plus `level`, in front of which they do not count."""
+    """Distance of the points of a run of moves above the contour plus `level`; points before it do not count."""
     places = [place for stroke in run for place in stroke.samples() if place[0] <= contour.places[0][0]]
     return [(contour.clearance(place) - level, place) for place in places]
 
 
 def farthest(contour, run):
-    """Of the contour's places from a run of moves: that it has been followed from its beginning to its end."""
+    """Checks that a run of moves has followed the contour from its beginning to its end."""
     return max(min(stroke.distance(place) for stroke in run) for place in contour.places[::20])
 
 
 def judge(contour, cycles, runs, options):
-    """Prints the measures; whether one is above its bound."""
+    """Prints the measures; returns whether one exceeds its bound."""
     is_bad = len(runs) != len(cycles)
     for (code, levels), cycle in zip(cycles, runs):
         is_finishing = code == '70'
@@ -227,7 +227,7 @@ def judge(contour, cycles, runs, options):
                 left = farthest(contour, made[0])
                 line += (f', highest {highest[0]:.5f} mm above it at Z{highest[1][0]:.3f} X{highest[1][1]:.3f}, '
                          f'no place of the contour farther than {left:.4f} mm')
-                # In a corner of the contour the tool is farther by up to a factor of 2.
+                # In a corner of the contour the distance of the tool is larger by up to a factor of 2.
                 is_bad = is_bad or highest[0] > options.standing or left > 2 * level + options.standing
             print(line)
     return is_bad

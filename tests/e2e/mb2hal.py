@@ -98,7 +98,7 @@ NELEMENTS=1
 HAL_TX_NAME=last
 '''
 class Hal:
-    """A HAL with the component, as long as `with` lasts."""
+    """A HAL with the component, for the duration of `with`."""
 
     def __init__(self, programs, folder, program, link):
         self.programs, self.folder = programs, folder
@@ -156,7 +156,7 @@ def check(programs, folder, program, link, device, seed):
             hal.until('what is written is read back', lambda w=words: hal.get(*(f'back.{i:02}.int' for i in range(4))) == [str(word) for word in w])
             hal.until('coils are read back', lambda b=bits: hal.get(*(f'coils.{i:02}.bit' for i in range(10))) == ['TRUE' if bit else 'FALSE' for bit in b])
         hal.set(**{'set.00.float': 70000, 'set.01.float': -3.5, 'set.01.int': 0, 'set.02.float': 2.9, 'set.02.int': 0})
-        # LinuxCNC's mb2hal lets 70000 become 4464: that one case differs.
+        # LinuxCNC's mb2hal turns 70000 into 4464; only that case differs.
         hal.until('registers are limited, negative ones have a sign', lambda: device.holding[20:23] == [65535, 65533, 2])
         hal.set(**{'set.00.int': -32768, 'set.00.float': -40000})
         hal.until('and limited, too', lambda: device.holding[20] == 32768)

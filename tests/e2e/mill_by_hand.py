@@ -6,7 +6,7 @@ import pathlib
 import shutil
 import subprocess
 
-STEP_S = 40  # a step of a machine that works is over long before
+STEP_S = 40  # a step of a working machine takes much less time
 BY_HAND = """unlinkp iocontrol.0.tool-change
 unlinkp iocontrol.0.tool-changed
 loadusr -W hal_manualtoolchange
@@ -17,7 +17,7 @@ net by-hand-number iocontrol.0.tool-prep-number => hal_manualtoolchange.number
 
 
 class Mill:
-    """A copy of configs/sim/mill_mm.ini with halui, without the parameter file of others, as a separate instance."""
+    """A copy of configs/sim/mill_mm.ini with halui and its own parameter file, as a separate instance."""
 
     def __init__(self, millwright, halcmd, root, folder, name):
         self.millwright, self.halcmd, self.folder = millwright, halcmd, folder
@@ -41,12 +41,12 @@ class Mill:
         return subprocess.run([self.halcmd, 'setp', name, value], env=self.env, check=False).returncode == 0
 
     def position(self):
-        """Of the first joint; nan where HAL does not answer."""
+        """Position of the first joint; nan if HAL does not answer."""
         return float(self.pin('joint.0.pos-cmd') or 'nan')
 
 
 class Findings:
-    """What is not as it should be."""
+    """Deviations from the expected state."""
 
     def __init__(self):
         self.failures = []
@@ -57,6 +57,6 @@ class Findings:
             print(f'FAIL {what}', *more, sep='\n')
 
     def status(self):
-        """Says how many; for the exit."""
+        """Prints the number of faults and returns the exit status."""
         print(f'{len(self.failures)} failed')
         return 1 if self.failures else 0

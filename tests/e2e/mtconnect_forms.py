@@ -50,7 +50,7 @@ def name_of(word):
 
 
 class Check:
-    """Collects what is wrong with one document."""
+    """Collects the faults of one document."""
 
     def __init__(self, text):
         self.problems = []
@@ -83,7 +83,7 @@ class Check:
             self.expect(name.endswith('?') or name in element.attrib, f'<{element.tag}> has no {name}')
 
     def children(self, element, *order):
-        """Each name once at most, but those with * any number of times, in this order."""
+        """Each name at most once, names with * any number of times, in this order."""
         places = {name.strip('*'): i for i, name in enumerate(order)}
         found = [child.tag for child in element]
         self.expect(all(tag in places for tag in found), f'<{element.tag}> has {found}')
@@ -185,7 +185,7 @@ def problems_of(text):
 
 
 def self_test():
-    """Documents that are wrong are found."""
+    """Faulty documents are detected."""
     right = ('<MTConnectError xmlns="urn:mtconnect.org:MTConnectError:2.2"><Header creationTime="2026-01-01T00:00:00Z" sender="h" instanceId="1" '
              'version="2.2.0.0" bufferSize="10"/><Errors><Error errorCode="NO_DEVICE">text</Error></Errors></MTConnectError>')
     wrong = (right.replace('NO_DEVICE', 'NOTHING'), right.replace(' sender="h"', ''), right.replace('>text<', '><'), right[:-1],

@@ -46,7 +46,7 @@ def run(*words):
 
 
 def why_not():
-    """Why no namespaces can be made here; None where they can."""
+    """The reason why no namespaces can be created; None if they can."""
     for program in ('ip', 'unshare', 'nsenter'):
         if shutil.which(program) is None:
             return f'there is no program {program}'
@@ -72,7 +72,7 @@ class Elsewhere:
         assert os.readlink('/proc/self/ns/net') != os.readlink(f'/proc/{self.keeper.pid}/ns/net')
 
     def there(self, *words):
-        """The command that does it there."""
+        """The command that runs a program there."""
         return ('nsenter', '--target', str(self.keeper.pid), '--net', *words)
 
     def end(self):
@@ -91,7 +91,7 @@ class NetworkBench(Bench):
 
 
 def can_connect(host, port):
-    """Of this program where it runs; for 'connect HOST PORT'."""
+    """Path of this program, for 'connect HOST PORT'."""
     try:
         socket.create_connection((host, port), 2).close()
     except OSError:
@@ -109,7 +109,7 @@ def refused_ways(bench, elsewhere):
 
 
 def by_library(bench, elsewhere, command_client, encoding, key):
-    """By a configuration that names a remote host."""
+    """Uses a configuration that names a remote host."""
     path = bench.config(f'{encoding}.nml', HERE, encoding, key)
     channels = bench.begin('are up', 'nml', path)
     said = pathlib.Path(bench.folder / f'{len(bench.started) - 1}.out').read_text()
@@ -122,13 +122,13 @@ def by_library(bench, elsewhere, command_client, encoding, key):
 
 
 def by_socket(bench, elsewhere):
-    """A client that knows docs/reference/nml.md only."""
+    """A client that was written from docs/reference/nml.md only."""
     done = run(*elsewhere.there(sys.executable, __file__, 'operate', HERE, str(bench.port)))
     expect(done.returncode == 0, 'a client of the documented protocol operates it', done.stdout, done.stderr)
 
 
 def pulled_cable(bench, elsewhere, machine):
-    """In the middle of a move of 2 s."""
+    """Stops in the middle of a move of 2 s."""
     with subprocess.Popen(elsewhere.there(sys.executable, __file__, 'move', HERE, str(bench.port)), stdout=subprocess.PIPE,
                           text=True) as mover:
         expect(mover.stdout.readline() == 'moves\n', 'it moves')

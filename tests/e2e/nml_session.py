@@ -36,7 +36,7 @@ P emcsvr emcError LOCAL localhost R 1 1.0 1 2
 
 
 class Client:
-    """Speaks what docs/reference/nml.md says."""
+    """Speaks the protocol of docs/reference/nml.md."""
 
     def __init__(self, port, host='127.0.0.1'):
         self.socket = socket.create_connection((host, port), STEP_S)
@@ -59,7 +59,7 @@ class Client:
         return status, number, self.receive(size).decode(), request == self.requests
 
     def send(self, name, number, **fields):
-        """The serial number."""
+        """Sends a command and returns its serial number."""
         lines = [f'{name} {number}', 'serial_number=0'] + [f'{key}={value}' for key, value in fields.items()]
         status, serial, text, isMine = self.ask(WRITE, COMMAND, ('\n'.join(lines) + '\n').encode())
         expect(status == DONE and isMine, f'{name} is taken', text)
@@ -72,7 +72,7 @@ class Client:
         return dict(line.split('=', 1) for line in lines[1:])
 
     def do(self, name, number, **fields):
-        """How the command ended."""
+        """The final state of the command."""
         serial = str(self.send(name, number, **fields))
         deadline = time.monotonic() + STEP_S
         while time.monotonic() < deadline:
@@ -92,7 +92,7 @@ class Bench(Mill):
         self.started = []
 
     def begin(self, what, *words):
-        """Until it reports that it is running."""
+        """Waits until the machine reports that it is running."""
         path = self.folder / f'{len(self.started)}.out'
         with path.open('w', encoding='utf-8') as file:
             process = subprocess.Popen([self.millwright, *words], env=self.env, stdin=subprocess.DEVNULL, stdout=file,
@@ -105,7 +105,7 @@ class Bench(Mill):
         return process
 
     def start_machine(self):
-        """The process, when the machine is started."""
+        """Returns the process when the machine has started."""
         return self.begin('is running: instance', 'start', str(self.ini), '--no-display')
 
     def end_all(self):

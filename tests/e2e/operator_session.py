@@ -50,7 +50,7 @@ class Terminal:
         return re.search(pattern, self.text[start:]) is not None
 
     def stays_without(self, pattern, seconds, start):
-        """The pattern does not come within the time: a stop holds."""
+        """The pattern does not appear within the time, so a stop remains effective."""
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:
             self.read(0.05)

@@ -33,7 +33,7 @@ def main():
     millwright, ini, program = sys.argv[1:4]
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        # A copy, so that parameter files are written there and both runs begin alike.
+        # A copy, so that parameter files are written there and both runs start with the same values.
         for copy in ('one', 'two'):
             shutil.copytree(pathlib.Path(ini).parents[2], folder / copy, ignore=shutil.ignore_patterns('build', '.git', '*.var', '*.journal*'))
         place = pathlib.Path(ini).relative_to(pathlib.Path(ini).parents[2])

@@ -22,7 +22,7 @@ class Feeder:
         self.node, self.more = node, [str(word) for word in more]
 
     def numbers(self):
-        """What it has accepted; a last line that the kill has torn does not count."""
+        """The numbers that it has accepted; a last line that the kill has truncated does not count."""
         text = self.accepted.read_text() if self.accepted.exists() else ''
         return [int(line) for line in text[:text.rfind('\n') + 1].split()]
 
@@ -32,7 +32,7 @@ class Feeder:
             if self.accepted.stat().st_size:
                 out.write('\n')
                 out.flush()
-            # A number that was accepted but not printed comes again with another time: numbers leave a gap.
+            # A number that was accepted but not printed is sent again with another time: numbers leave a gap.
             self.process = subprocess.Popen([*self.words, str(first + 10), self.node, *self.more], stdout=out, stderr=subprocess.DEVNULL)
 
     def kill(self):
@@ -73,7 +73,8 @@ def main():
                     feeder.kill()
                     feeder.start()
                 elif what == 'host':
-                    # As a kill: the connection ends without a word, and what is in its socket is lost.
+                    # As after a kill: the connection ends without a message, and the data in its socket are
+                    # lost.
                     host.client._sock_close()
                     collect()
                     host.client.loop_stop()

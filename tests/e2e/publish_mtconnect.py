@@ -131,7 +131,7 @@ def check_streams(agent, mill):
         seen += sequences(stream.next())
     stream.cut()
     jog(mill, 'halui.axis.x.minus', 0.5)
-    # A client that lost its connection continues after the last observation that it has.
+    # A client that lost its connection continues after the last observation that it has received.
     again = StreamOfParts(agent, f'/sample?interval=50&heartbeat=300&count=1000&from={max(seen) + 1}')
     last = agent.header()['lastSequence']
     while max(seen) < last:
@@ -144,7 +144,7 @@ def check_streams(agent, mill):
 
 
 def check_clients_that_do_not_read(agent, mill):
-    """They cost neither the machine nor another client anything."""
+    """These clients slow down neither the machine nor another client."""
     idle = []
     for _ in range(8):
         client = socket.create_connection(('127.0.0.1', agent.port))

@@ -15,7 +15,7 @@ import time
 import paho.mqtt.client as mqtt
 
 LIMIT_S = 40
-# It is not in the path of ordinary users.
+# The program is not in the path of ordinary users.
 BROKER = shutil.which('mosquitto', path=os.environ.get('PATH', '') + os.pathsep + '/usr/sbin') or 'mosquitto'
 
 
@@ -26,7 +26,7 @@ def free_port():
 
 
 def wait_for(condition, what, limit_s=LIMIT_S):
-    """Until it holds; an error when it never does."""
+    """Waits until the condition holds; raises an error if it never does."""
     end = time.monotonic() + limit_s
     while not condition():
         if time.monotonic() > end:
@@ -110,7 +110,7 @@ class Host:
         with self.lock:
             known = list(self.seq)
             self.seq.clear()
-        for group, node in known:  # what was sent in between is not known
+        for group, node in known:  # messages sent in between are not known
             self.send_rebirth(group, node)
         if self.name:
             client.publish(f'spBv1.0/STATE/{self.name}', self.state(True), 1, True)
@@ -148,7 +148,7 @@ class Host:
         elif verb == 'NDEATH':
             return
         elif node not in self.seq:
-            return self.send_rebirth(*node)  # its birth was before us
+            return self.send_rebirth(*node)  # its birth was before our start
         else:
             self.seq[node] = (self.seq[node] + 1) % 256
         if payload.seq != self.seq[node]:
@@ -164,7 +164,8 @@ class Host:
         for metric in payload.metrics:
             name = self.aliases.get(device, {}).get(metric.alias)
             if device not in self.aliases:
-                continue  # its birth was before us: a rebirth is requested, and the value comes again
+                # its birth was before our start: a rebirth is requested, and the value is sent again
+                continue
             if name is None:
                 self.problems.append(f'{parts[2]} has the unknown alias {metric.alias}')
                 continue
@@ -175,6 +176,6 @@ class Host:
                 self.newest[name] = value
 
     def has(self, **values):
-        """The newest values; names with _ for blanks and / are given as a dict."""
+        """The newest values, as a dict; blanks and / in names are replaced by _."""
         with self.lock:
             return all(self.newest.get(name) == value for name, value in values.items())

@@ -62,7 +62,7 @@ class Shop:
         return self.publisher.wait(20)
 
     def switch_on(self):
-        """By HAL, as a person at the panel does; homed at once."""
+        """Operates the machine through HAL, as a person at the panel does; it homes at once."""
         for pin in ('halui.estop.reset', 'halui.machine.on', 'halui.home-all'):
             self.mill.set_pin(pin, '1')
             time.sleep(0.3)
@@ -111,14 +111,14 @@ def check_rebirth(shop, host):
 
 
 def check_hang(shop, host, broker):
-    """A broker that hangs delays nothing on the machine: it runs on, and its values are sent later."""
+    """A broker that hangs delays nothing on the machine: the machine continues, and its values are sent later."""
     broker.hang()
     start = shop.mill.position()
     shop.mill.set_pin('halui.axis.x.plus', '1')
     time.sleep(0.6)
     shop.mill.set_pin('halui.axis.x.plus', '0')
     moved = shop.mill.position() - start
-    time.sleep(12.5)  # longer than the answer that the publisher waits for
+    time.sleep(12.5)  # longer than the publisher waits for the answer
     expect(moved > 1, 'the machine moves while the broker hangs', moved)
     expect(shop.publisher.poll() is None, 'the publisher lives while the broker hangs')
     broker.go_on()
@@ -175,7 +175,7 @@ def check_deaths(shop, host):
 
 
 def check_clean_session(broker):
-    """As the broker saw it: p2 is MQTT 3.1.1, c1 a clean session."""
+    """In the log of the broker, p2 is MQTT 3.1.1 and c1 a clean session."""
     lines = [line for line in broker.log.read_text().splitlines() if 'as plant/cell' in line]
     expect(lines and all('(p2, c1, k5' in line for line in lines), 'the session is clean', lines)
 

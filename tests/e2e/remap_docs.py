@@ -26,7 +26,8 @@ def run(rs274, folder, program):
 
 
 def outcome(rs274, folder, program):
-    before = len([call for call in run(rs274, folder, '')[0] if call]) - 8  # without what M2 and the end do
+    # without the calls of M2 and of the end
+    before = len([call for call in run(rs274, folder, '')[0] if call]) - 8
     calls, errors = run(rs274, folder, program)
     calls = calls[before:]
     ends = [i for i, call in enumerate(calls) if call.startswith('SET_G5X_OFFSET(1,')]

@@ -160,7 +160,7 @@ def operate(bench):
 
 
 def killed_jog(bench, path):
-    """A network that fails in the middle of a jog stops it."""
+    """A failure of the network during a jog stops the jog."""
     with bench.start_python(JOG, path) as jogger:
         expect(jogger.stdout.readline() == 'jogs\n', 'it jogs, longer than one lease')
         before = bench.position()

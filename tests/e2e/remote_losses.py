@@ -18,8 +18,8 @@ from nml_session import FOUND
 from remote_clients import BEGIN, OPERATE, Computers
 
 expect = FOUND.expect
-LIMIT_S = 15  # for anything that a client does while its server does not answer
-# One of two clients: it counts in a parameter that only it uses; one in five commands must fail.
+LIMIT_S = 15  # for any action of a client while its server does not answer
+# One of two clients: it counts in a parameter that only it uses; one of five commands must fail.
 SHARE = BEGIN + """
 who, count = sys.argv[2], 25
 c.mode(linuxcnc.MODE_MDI)
@@ -40,7 +40,7 @@ s.poll()
 must(s.task_state == linuxcnc.STATE_ON, 'the machine is on')
 print('done', flush=True)
 """
-# Loses its server, says when, and finds it again.
+# Loses its server, reports this, and finds it again.
 LOSE = BEGIN + """
 s.poll()
 if c.mode(linuxcnc.MODE_MDI) or c.wait_complete(20) != linuxcnc.RCS_DONE:
@@ -116,7 +116,7 @@ def wait_stopped(pid):
 
 
 def silence(bench, path, server):
-    """A server that does not answer; a command that a client has abandoned is not executed when the server is back."""
+    """A server that does not answer: a command that a client has abandoned is not executed when the server answers again."""
     before = bench.position()
     with bench.client(LOSE, path) as client:
         expect(client.stdout.readline() == 'polls\n', 'it polls')
@@ -139,7 +139,7 @@ def silence(bench, path, server):
 
 
 def restart(bench, path, machine, server):
-    """The machine and its server end and are started again: clients that live find them."""
+    """The machine and its server are ended and started again; running clients find them."""
     with bench.client(LOSE, path) as client:
         expect(client.stdout.readline() == 'polls\n', 'it polls')
         for process in (server, machine):
@@ -161,7 +161,7 @@ def restart(bench, path, machine, server):
 
 
 def machine_alone_ends(bench, path, machine):
-    """A machine that is killed: no client shows its last status as that of a living machine."""
+    """A machine that was killed: no client shows its last status as current."""
     with bench.client(LOSE, path) as client:
         expect(client.stdout.readline() == 'polls\n', 'it polls')
         machine.kill()

@@ -24,7 +24,7 @@ expect = FOUND.expect
 
 
 class Program:
-    """A program whose output goes to a file that can be read while it runs."""
+    """A program whose output is written to a file that can be read while it runs."""
 
     def __init__(self, folder, env, *words):
         self.path = folder / f'{time.monotonic_ns()}.out'
@@ -80,7 +80,7 @@ class Bench(Mill):
                        '--realtime', '--yes', *more)
 
     def stands(self):
-        """It stops, spindle and coolant off."""
+        """The machine stops and switches spindle and coolant off."""
         rest = wait_until(lambda: self.pin('spindle.0.on') == 'FALSE' and self.pin('iocontrol.0.coolant-flood') == 'FALSE')
         time.sleep(0.4)
         here = self.position()
@@ -88,13 +88,13 @@ class Bench(Mill):
         return rest and here == self.position()
 
     def is_down(self):
-        """Nothing of the instance is left: HAL is gone and another machine can start."""
+        """Nothing of the instance remains: HAL has ended and another machine can start."""
         return wait_until(lambda: subprocess.run([self.halcmd, 'show', 'comp'], env=self.env, capture_output=True,
                                                  check=False).returncode != 0)
 
 
 def certified(bench, machine, program):
-    """The certificate of motion of the last program, as soon as it is that of this one."""
+    """The certificate of motion of the last program, when it exists for this program."""
     file = bench.ini.parent / 'mill_mm.var.certificate.json'
 
     def read():

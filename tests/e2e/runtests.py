@@ -38,7 +38,7 @@ def main():
             for file, text in files.items():
                 (folder / file).write_text(text)
                 (folder / file).chmod(0o755 if text.startswith('#!') else 0o644)
-        env = {'PATH': '/usr/bin:/bin', 'HOME': place}  # its own programs are found without it
+        env = {'PATH': '/usr/bin:/bin', 'HOME': place}  # the program finds its own programs without it
         done = subprocess.run([program, '--patience', '5', place], env=env, capture_output=True, text=True, check=False, timeout=120)
         for name, (_, expected) in TESTS.items():
             if f'{expected}: {place}/some/{name}' not in done.stdout:

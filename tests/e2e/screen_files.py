@@ -41,7 +41,7 @@ class Installed:
         (web / 'index.html').write_text('<!doctype html><title>screen</title>')
 
     def output_of_server(self, *words):
-        """What a server prints until it has printed an address or has ended; and its exit status after SIGTERM."""
+        """The output of a server until it has printed an address or has ended, and its exit status after SIGTERM."""
         path = self.place / 'output'
         with path.open('w') as file:
             process = subprocess.Popen([self.program, *words], env=self.env, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT)

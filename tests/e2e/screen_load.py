@@ -45,7 +45,7 @@ def cpu_s(pid):
 
 
 def latency(port, server, program, seconds):
-    """From the command that changes the status to the arrival of the status: more than the delay of the status alone."""
+    """Time from the command that changes the status to the arrival of the status, which is more than the delay of the status alone."""
     listeners = [Listener(port) for _ in range(SCREENS)]
     asker = Screen(port)
     expect(asker.until(lambda: 'overrides' in asker.status), 'the sixth receives the status')
@@ -159,7 +159,7 @@ class Strangers:
                 with self.connect() as one:
                     act(one)
             except OSError:
-                time.sleep(0.002)  # turned away
+                time.sleep(0.002)  # rejected
 
     def babble(self, one):
         one.sendall(self.GARBAGE)
@@ -185,7 +185,7 @@ class Strangers:
 
 
 def strangers_come(port, seconds):
-    """How often one of them was greeted."""
+    """The number of times that one of them received a greeting."""
     mine, theirs = multiprocessing.Pipe()
     process = multiprocessing.Process(target=Strangers(port, seconds).run, args=(theirs,), daemon=True)
     process.start()

@@ -28,11 +28,12 @@ class Launched(Mill):
         super().__init__(linuxcnc, halcmd, root, folder, 'script')
         shutil.copy(SCREEN, self.ini.parent / 'screen.py')
         (self.ini.parent / 'screen.py').chmod(0o755)
-        # A configuration without by_hand.hal: its tools are changed at once.
+        # A configuration without by_hand.hal changes its tools at once.
         text = self.ini.read_text().replace('HALFILE = by_hand.hal\n', '')
         self.plain = text.replace('DISPLAY = millwright\n', 'DISPLAY = ./screen.py first\n')
         expect(self.plain != text, 'the configuration names a display')
-        (self.ini.parent / 'mill_mm.var').write_text('5220\t1.0\n5221\t0.5\n')  # G54 is not at the machine's zero
+        # G54 differs from the machine's zero
+        (self.ini.parent / 'mill_mm.var').write_text('5220\t1.0\n5221\t0.5\n')
 
     def launch(self, *words, extra='', ini=None, timeout=STEP_S):
         """(status, output) of the launcher."""
@@ -47,7 +48,7 @@ class Launched(Mill):
                 return 'too long', process.communicate()[0]
 
     def leftovers(self):
-        """What of the instance is still there."""
+        """Parts of the instance that still exist."""
         return [path for path in pathlib.Path('/dev/shm').glob(f"*{self.env['MILLWRIGHT_INSTANCE']}*")]
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The display of script_display.py: what it is asked to check is the last word, or the last but one."""
+"""The display of script_display.py: the check to run is the last word, or the last but one."""
 import os
 import pathlib
 import signal
@@ -269,7 +269,7 @@ def main():
     if what == 'killed':
         os.kill(os.getpid(), signal.SIGKILL)
     if what == 'kill-launcher':
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a display that does not want to
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a display that refuses to end
         os.kill(os.getppid(), signal.SIGTERM)
         time.sleep(60)
     if what == 'kill-realtime':

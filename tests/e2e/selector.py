@@ -86,7 +86,7 @@ def check_selector(bench, root):
     bench.expect('several have that' in again.stdout or str(copy) in again.stdout, f'chosen again: {again.stdout}')
     left = bench.run(['millwright', 'select', '--print'], 'q\n')
     bench.expect(left.returncode == 0 and '.ini\n' not in left.stdout.splitlines()[-1], f'left: {left}')
-    # The launcher asks at a terminal only.
+    # The launcher asks only at a terminal.
     bench.expect(bench.run(['linuxcnc']).returncode == 2, 'no question without a terminal')
     status, output = bench.at_terminal(['linuxcnc'], 'shop/mill_mm\n')
     ini = bench.mine / 'shop/mill_mm.ini'

@@ -40,7 +40,7 @@ def play(machine, noon_ms):
 
 
 def check_kept(database, before, port, today):
-    """What is there after a start with KEEP_DAYS."""
+    """The values that exist after a start with KEEP_DAYS."""
     first = database.ask(f"SELECT '{today}'::date - {KEEP}")[0][0]
     expected = [row for row in before if row[0] >= first]
     expect(len(before) == DAYS + 2 and 0 < len(expected) < len(before), 'values of some days are too old', before)
@@ -62,7 +62,7 @@ def check_kept(database, before, port, today):
 
 
 def check_late_days(database):
-    """All tables were written today, so they stay. Then each is set back to its day, and that of the clock that is wrong, too."""
+    """All tables were written today, so they are kept. Then each is set back to its day, including the table of the wrong clock."""
     before = database.ask(COUNTS)
     database.ask(f"SELECT drop_days((now() AT TIME ZONE 'UTC')::date - {KEEP})")
     expect(database.ask(COUNTS) == before, 'values that came late stay', database.ask(COUNTS), before)

@@ -28,7 +28,7 @@ LENGTHS = (256, 256, 256, 512, 1024, 255, 257, 1)
 
 
 class Relay(threading.Thread):
-    """Passes the packets of one broker to its clients, but for those that are to be lost."""
+    """Forwards the packets of a broker to its clients, except the packets that are to be lost."""
 
     def __init__(self, broker_port):
         super().__init__(daemon=True)
@@ -136,7 +136,7 @@ def split(packet):
 
 
 def fields_of(payload):
-    """{number: value} of a message of protobuf; of fields that come again the last."""
+    """{number: value} of a protobuf message; a repeated field has its last value."""
     found, at = {}, 0
 
     def number():
@@ -192,8 +192,8 @@ class World:
         time.sleep(0.5)
 
     def judge(self):
-        """How many values were accepted, and which of them are lost and stored twice. What has no receipt is sent again after a new
-        start, so all that is missing then was confirmed."""
+        """The number of accepted values, and the values that are lost or stored twice. Values without a receipt are sent again after a new
+        start, so every value that is missing then had been confirmed."""
         for one in self.feeders.values():
             one.kill()
         accepted = {node: one.numbers() for node, one in self.feeders.items()}

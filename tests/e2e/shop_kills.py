@@ -35,7 +35,7 @@ class World:
             one.start()
 
     def disturb(self, chance):
-        """One part is killed or stopped for a while; returns what was done."""
+        """Kills a part, or stops it for a time; returns a description."""
         part = chance.choice(['broker', 'database', 'collector', 'publisher'])
         kind = chance.choice(['kill', 'hang'])
         if part == 'publisher':
@@ -54,7 +54,7 @@ class World:
         return f'{part} killed'
 
     def hang(self, target, seconds, is_killed):
-        """What hangs may be killed before it works again."""
+        """A part that hangs may be killed before it works again."""
         if target is self.database:
             family = target.family()
             target.signal(signal.SIGSTOP, family)
@@ -121,7 +121,7 @@ def main():
                 return all(goal and stored[node][goal] for node, goal in goals.items())
             wait_for(is_complete, f'{goals} are stored', 60)
             accepted = {node: [number for number in one.numbers() if number <= goals[node]] for node, one in world.feeders.items()}
-            # The history comes after the values of now.
+            # The history follows the current values.
             end = time.monotonic() + 30
             while judge(world, accepted)[0] and time.monotonic() < end:
                 time.sleep(0.2)

@@ -59,7 +59,7 @@ class Machine:
         self.client.publish(f'spBv1.0/plant/{kind}/cell{device}', payload.SerializeToString(), 0, False)
 
     def bear(self, at_ms, sent_ms=None):
-        """With values of a time, sent at that time or another one."""
+        """Values with a time, sent at that time or another one."""
         self.seq = 0
         self.send('NBIRTH', at_ms, {'bdSeq': 3}, True, sent_ms)
         self.send('DBIRTH', at_ms, {'State': 'ON', 'Execution': 'READY', 'Mode': 'AUTO', 'Program/Path': '/nc/bolt.ngc', 'Program/Line': 7,
@@ -82,7 +82,7 @@ class Machine:
 
 
 class Mailbox(socketserver.StreamRequestHandler):
-    """Enough of SMTP for one sender."""
+    """The part of SMTP that one sender needs."""
 
     def handle(self):
         self.wfile.write(b'220 test\r\n')
@@ -100,7 +100,7 @@ class Mailbox(socketserver.StreamRequestHandler):
 
 
 class Hook(http.server.BaseHTTPRequestHandler):
-    """Keeps what a webhook receives."""
+    """Stores the data that a webhook receives."""
 
     def do_POST(self):
         body = self.rfile.read(int(self.headers['Content-Length']))
@@ -172,7 +172,7 @@ def check_notifications(mails, bodies):
 
 
 def play(machine, now_ms):
-    """An hour: values of the past, as a publisher sends them that could not reach the broker."""
+    """An hour of past values, from a publisher that could not reach the broker."""
     at = now_ms - 3600_000
     machine.bear(at)
     for second, values in ((100, {'Execution': 'ACTIVE'}), (400, {'Execution': 'FEED_HOLD'}), (500, {'Execution': 'ACTIVE'}),

@@ -36,7 +36,7 @@ def judge(root):
 
 
 def run_sql(database, sql):
-    """Rows of texts; each statement is a transaction."""
+    """Rows as texts; each statement is a transaction."""
     done = subprocess.run([str(database.bin / 'psql'), '-X', '-q', '-A', '-t', '-v', 'ON_ERROR_STOP=1', database.connection], input=sql,
                           capture_output=True, text=True, check=False)
     if done.returncode:
@@ -105,7 +105,7 @@ def compare(database, chance, what, columns):
 
 
 def check_migration(database, root, count):
-    """A new table of runs from values that were stored before gives the same runs."""
+    """A new table of runs from the stored values contains the same runs."""
     before = run_sql(database, 'SELECT * FROM run ORDER BY machine, begins;')
     run_sql(database, 'DELETE FROM run; SELECT renew_runs(id, \'-infinity\', \'infinity\') FROM machine;')
     after = run_sql(database, 'SELECT * FROM run ORDER BY machine, begins;')

@@ -28,7 +28,7 @@ expect = FOUND.expect
 MINUTE_MS, HOUR_MS, DAY_MS = 60_000, 3_600_000, 86_400_000
 # Of two bytes and four bytes a letter, longer than one encoded word.
 LATE_ALARM = 'Kühlmitteldruck zu niedrig 🛢 – Füllstand prüfen, dann Störung quittieren und Programm fortsetzen: ä'
-WRONG_MS = 2 * HOUR_MS  # what the clock is ahead
+WRONG_MS = 2 * HOUR_MS  # the time by which the clock is ahead
 
 
 def rows(database, metric, since_ms):
@@ -39,7 +39,7 @@ def rows(database, metric, since_ms):
 
 
 def check_same_time(database, machine, now_ms):
-    """In one message, in several, and the same value again."""
+    """In one message, in several messages, and with the same value again."""
     at = now_ms - 50_000
     machine.readings(at, ('Program/Line', at, 1), ('Program/Line', at, 2), ('Program/Line', at, 1))
     machine.readings(at, ('Program/Line', at + 1, 3))
@@ -76,11 +76,11 @@ def check_random(database, machine, now_ms):
 
 
 def check_late(database, machine, now_ms):
-    """A job of ten days ago, which comes now: 600 s, of them 60 s in feed hold."""
+    """A job of ten days ago that arrives now: 600 s, of which 60 s in feed hold."""
     at = now_ms - 10 * DAY_MS
     before = database.ask("SELECT count(*) FROM jobs((SELECT id FROM machine WHERE device = 'Lathe'), '-infinity', now())")
     machine.readings(now_ms, ('Execution', at, 'ACTIVE'), ('Execution', at + 100_000, 'FEED_HOLD'), ('Execution', at + 600_000, 'READY'))
-    # Later than the rest of its job, and in the middle of it.
+    # Later than the rest of its job, and within it.
     machine.readings(now_ms, ('Execution', at + 160_000, 'ACTIVE'), ('Program/Ended', at + 599_000, 1))
     span = f"(SELECT id FROM machine WHERE device = 'Lathe'), to_timestamp({(at - HOUR_MS) / 1000}), to_timestamp({(at + HOUR_MS) / 1000})"
     wait_for(lambda: database.ask(f'SELECT result FROM jobs({span})') == [['ENDED']], 'a late job')
@@ -92,7 +92,7 @@ def check_late(database, machine, now_ms):
 
 
 def check_late_alarm(machine, mails, bodies, now_ms):
-    """An alarm of two days ago that is over, one that is not, and one of now."""
+    """An alarm of two days ago that has ended, one that has not, and one of now."""
     machine.readings(now_ms, ('Alarms/Drives', now_ms - 2 * DAY_MS, LATE_ALARM), ('Alarms/Drives', now_ms - 2 * DAY_MS + 1000, ''))
     machine.readings(now_ms, ('Alarms/Drives', now_ms - 3 * HOUR_MS, 'Old alarm.'))
     wait_for(lambda: len(bodies) == 2 and len(mails) == 2, 'late alarms are sent')
@@ -128,7 +128,7 @@ def check_wrong_clock(database, machine, port, bodies, now_ms):
     expect(bodies[-1]['late_s'] == 0, 'it is not late', bodies[-1])
     machine.send('NDEATH', ahead, {'bdSeq': 3}, True)
     wait_for(lambda: not json.loads(get(port, '/machines')[1])['machines'][0]['alive'], 'a machine with a wrong clock has no contact')
-    # The clock is right again.
+    # The clock is correct again.
     machine.bear(int(time.time() * 1000))
     wait_for(lambda: json.loads(get(port, '/machines')[1])['machines'][0]['alive'], 'it is there again')
     machine.bear(int(time.time() * 1000) - WRONG_MS)
@@ -137,7 +137,7 @@ def check_wrong_clock(database, machine, port, bodies, now_ms):
 
 
 def check_restart(database, machine, port):
-    """A machine that is born again in the millisecond of its death, as after a change of its metrics."""
+    """A machine with a birth in the millisecond of its death, as after a change of its metrics."""
     at = int(time.time() * 1000) + WRONG_MS + MINUTE_MS
     machine.send('DDEATH', at, {})
     machine.send('DBIRTH', at, {'State': 'ESTOP', 'Execution': 'READY'}, True)

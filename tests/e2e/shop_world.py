@@ -15,7 +15,7 @@ SKIPPED = 77
 
 
 def server_folder():
-    """The folder of PostgreSQL's programs; None where it is not installed."""
+    """The folder of PostgreSQL's programs; None if it is not installed."""
     folders = sorted(pathlib.Path('/usr/lib/postgresql').glob('*/bin'), key=lambda each: int(each.parent.name), reverse=True)
     on_path = shutil.which('initdb')
     folders += [pathlib.Path(on_path).resolve().parent] if on_path else []
@@ -54,7 +54,7 @@ class Postgres:
             raise RuntimeError(f'{words[0]}: {done.stdout}{done.stderr}')
 
     def start(self, *options):
-        """Without waits for the disk: a kill loses nothing that the kernel has."""
+        """Does not wait for the disk: a kill loses no data that the kernel has."""
         with open(self.log, 'a') as log:
             self.process = subprocess.Popen([str(self.bin / 'postgres'), '-D', str(self.data), '-k', str(self.sockets), '-h', '',
                 '-c', 'max_connections=20', '-c', 'fsync=off', *options], cwd='/', stdout=log, stderr=log, **self.as_user())
@@ -69,19 +69,19 @@ class Postgres:
         return self.psql('SELECT 1').returncode == 0
 
     def ask(self, sql):
-        """Rows of texts."""
+        """Rows as texts."""
         answer = self.psql(sql)
         if answer.returncode:
             raise RuntimeError(answer.stderr)
         return [line.split('|') for line in answer.stdout.splitlines()]
 
     def family(self):
-        """The server and its processes: those of a killed server end by themselves, but later."""
+        """The server and its processes; those of a killed server end by themselves, but later."""
         children = pathlib.Path(f'/proc/{self.process.pid}/task/{self.process.pid}/children').read_text().split()
         return [self.process.pid, *(int(child) for child in children)]
 
     def kill(self):
-        """As a crash: the server and all its processes at once."""
+        """Kills the server and all its processes at once, as in a crash."""
         family = self.family()
         self.signal(signal.SIGKILL, family)
         self.process.wait()

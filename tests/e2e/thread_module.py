@@ -46,7 +46,7 @@ def main():
         assert theirs[0] == 0, theirs[1]
         counted = re.search(r'counted (\d+)', theirs[1])
         assert counted, theirs[1]
-        # Homing and the moves come on top of half a second at 5 ms.
+        # Homing and the moves take place after half a second at 5 ms.
         assert 100 <= int(counted[1]) < 2000, counted[0]
         assert run(PLAIN, made)[2] == own[2], 'motion differs in a thread of the same period'
         other = run(PLAIN, 'loadrt userthreads servo_period_ns=2000000\n')

@@ -37,7 +37,8 @@ def steps_of(page):
             steps.append(('halcmd', code[len('halcmd: '):]))
         elif code and code.startswith('$ '):
             steps.append(('shell', code[2:]))
-    # A command right behind a file's text belongs to the file's block in the page's layout; split it off again.
+    # A command directly after a file's text belongs to the file's block in the page's layout; it is separated
+    # from the text.
     out = []
     for step in steps:
         if step[0] != 'file':
@@ -52,7 +53,7 @@ def steps_of(page):
 
 
 class Session:
-    """One halrun that takes lines; each is known to be done when an echo behind it comes back."""
+    """One halrun that reads lines; a line is done when the echo after it is returned."""
 
     def __init__(self, env, folder):
         self.process = subprocess.Popen(['halrun', '-I'], env=env, cwd=folder, stdin=subprocess.PIPE,

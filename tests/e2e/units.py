@@ -38,7 +38,7 @@ expect = FOUND.expect
 
 
 def unit_of(dimension, factor):
-    """The names of the units that a measured factor fits."""
+    """The names of the units that match a measured factor."""
     return [name for name, value in UNITS[dimension].items() if abs(factor / value - 1) < TOLERANCE]
 
 

@@ -60,7 +60,7 @@ def wait(condition, seconds=5.0):
 
 
 def steady(read, seconds=3.0):
-    """The value that `read` keeps for a while and that is not zero."""
+    """The value that `read` returns for some time and that is not zero."""
     end, last, same = time.time() + seconds, None, 0
     while time.time() < end:
         value = read()
@@ -73,7 +73,7 @@ def steady(read, seconds=3.0):
 
 
 def machine_time():
-    """Seconds of the servo thread, which a busy computer does not stretch."""
+    """Seconds of the servo thread, which do not depend on the load of the computer."""
     return get('clock.out')
 
 
@@ -198,7 +198,7 @@ def dial(name, read, scale, dimension):
     time.sleep(0.2)
     found(f'halui.{name}.value', dimension, read() / get(f'halui.{name}.value'))
     if name.startswith('spindle'):
-        return  # LinuxCNC 2.9 does not count here
+        return  # LinuxCNC 2.9 does not count in this case
     put(f'halui.{name}.count-enable', 1)
     time.sleep(0.2)
     start = read()
@@ -608,7 +608,7 @@ def rsh():
             found('linuxcncrsh get abs_cmd_pos', 'length', get('joint.0.pos-cmd') / tail(line.ask('get abs_cmd_pos X')))
             found('linuxcncrsh get joint_pos', 'length', get('joint.0.pos-cmd') / tail(line.ask('get joint_pos 0')))
             line.ask('set spindle_override 25')
-            if wait(lambda: S.spindle[0]['override'] != 0.5, 1):  # LinuxCNC 2.9 does nothing
+            if wait(lambda: S.spindle[0]['override'] != 0.5, 1):  # LinuxCNC 2.9 has no effect here
                 found('linuxcncrsh spindle_override', 'ratio', S.spindle[0]['override'] / 25)
             C.feedrate(1)
             C.spindleoverride(1)
@@ -717,7 +717,7 @@ def float_pins():
 
 
 def main():
-    component = hal.component('units')  # HAL answers while it exists
+    component = hal.component('units')  # HAL answers as long as it exists
     component.ready()
     for _ in range(100):
         try:

@@ -124,7 +124,7 @@ def main():
             after = ini.read_text()
             again = run(['update_ini', 'old.ini'], folder)
             expect(again.returncode == 0 and 'already' in again.stdout and ini.read_text() == after, f'{name}: a second time: {again}')
-            # Copies that are there already are never lost.
+            # Existing copies are never lost.
             ini.write_text(before['old.ini'])
             lost = run(['update_ini', 'old.ini'], folder)
             expect(lost.returncode == 1 and ini.read_text() == before['old.ini'], f'{name}: over copies: {lost}')

@@ -15,7 +15,7 @@ programs, source = map(pathlib.Path, sys.argv[1:3])
 
 
 def run(*command, cwd):
-    """What the command prints; ends the test when it fails."""
+    """The output of the command; ends the test when the command fails."""
     done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=100, check=False,
                           env={**os.environ, 'MILLWRIGHT_INSTANCE': f'user-driver-{os.getpid()}',
                                'MILLWRIGHT_MODULE_PATH': str(cwd)})

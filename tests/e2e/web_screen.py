@@ -36,7 +36,7 @@ def wait_until(condition, seconds=STEP_S):
 
 
 class Screen:
-    """A browser's socket: a WebSocket client, and the status put together from what came."""
+    """The socket of a browser: a WebSocket client, and the status combined from its messages."""
 
     def __init__(self, port, origin=None):
         self.socket = socket.create_connection(('127.0.0.1', port), STEP_S)
@@ -65,7 +65,7 @@ class Screen:
         return self.last_id
 
     def outcome(self, number):
-        """How a command has ended; a text when it has not."""
+        """The final state of a command; a text if it has not ended."""
         self.until(lambda: self.outcomes.get(number, {}).get('progress') in ('DONE', 'REFUSED', 'FAILED'))
         return self.outcomes.get(number, {}).get('progress', 'no outcome')
 
@@ -119,7 +119,7 @@ class Screen:
         return self.status['joints'][index]
 
     def cut(self):
-        """Without a word, as when a cable is pulled or the page is killed."""
+        """Disconnects without a message, as when a cable is pulled or the page is killed."""
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))
         self.socket.close()
         self.is_open = False
@@ -164,7 +164,7 @@ class Bench(Mill):
         return process, int(re.search(r'http://127\.0\.0\.1:(\d+)/', path.read_text()).group(1))
 
     def remote_port(self):
-        """Of a server that was started with --listen, which was the last one begun."""
+        """Data of the last server that was started with --listen."""
         expect(wait_until(lambda: 'for other computers' in self.files[-1].read_text()), 'other computers have a way in')
         return int(re.search(r'for other computers.*https://127\.0\.0\.1:(\d+)/', self.files[-1].read_text()).group(1))
 
@@ -205,7 +205,7 @@ def switch_on_and_home(screen):
 
 
 def jog(screen, velocity, has_lease):
-    """Without leases only a jog that ends by itself is taken."""
+    """Without leases, only a jog that ends by itself is accepted."""
     if has_lease:
         return screen.ask('JogContinuous', is_joint=True, index=0, velocity=velocity, lease_ms=5000)
     return screen.ask('JogIncrement', is_joint=True, index=0, velocity=abs(velocity), distance=20 * velocity)
@@ -271,7 +271,7 @@ def programs(port, screen, bench):
 
 
 def end_while_jogging(bench, server, port, has_lease):
-    """A server that ends in order takes its screens' jogs with it."""
+    """A server that ends normally also ends the jogs of its screens."""
     screen = Screen(port)
     expect(screen.until(lambda: 'joints' in screen.status) and screen.do('SetMode', mode='MANUAL') == 'DONE' and
            screen.do('SetTeleop', teleop=False) == 'DONE', 'joint mode again')
@@ -288,7 +288,7 @@ def end_while_jogging(bench, server, port, has_lease):
 
 
 def who_is_killed(bench, screen, server, port):
-    """The server; the machine continues."""
+    """The server is killed; the machine continues."""
     begin = screen.joint()['pos_cmd']
     screen.do('SetMode', mode='MANUAL')
     server.kill()

@@ -25,7 +25,7 @@ def append(path, text):
     path.write_text(path.read_text() + text)
 
 
-# Each: name, what to change in the folder, and what the one error must say.
+# Each case: name, the change in the folder, and the text of the one error.
 CASES = [
     ('missing section', lambda d: replace(d / 'configs/sim/mill_mm.ini', '[KINS]', '[KINSS]'),
      r'mill_mm\.ini.*error: section \[KINS\] is missing'),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Any text, formatted: each line stays a line and formatting twice changes nothing; its first line,
-// explained.
+// Formats any text: each line remains one line, and formatting twice changes nothing. Explains its first
+// line.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL files against an instance with a component, functions and a thread. The first byte says how the rest is
-// meant: as text (lines, substitution, words), as a list of commands with words that mostly make sense, or as
-// either for two passes; completion is asked for at the end.
+// HAL files against an instance with a component, functions and a thread. The first byte selects the meaning
+// of the rest: as text (lines, substitution, words), as a list of commands with words that mostly make sense,
+// or as either for two passes; completion is asked for at the end.
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -12,7 +12,7 @@
 
 namespace {
 
-/// What was decoded is encoded to bytes that are decoded to the same.
+/// Decoded data are encoded to bytes that decode to the same data.
 void check_messages(const std::string &bytes) {
     std::string buffer = bytes;
     mw::hal::Message message;

@@ -46,7 +46,7 @@ class DamagingTransport final : public lbp16::Transport {
         if (!result.isDone() || data.size() < 4) {
             return result;
         }
-        // Two bytes: where; one: by what; one: how many bytes are left.
+        // Two bytes select the position, one the change, one the number of bytes that are left.
         const std::size_t at = (data[0] + 256U * data[1]) % std::max<std::size_t>(result.bytes, 1);
         packet[at] ^= std::byte{data[2]};
         if ((data[3] & 0x80U) != 0) {

@@ -18,7 +18,7 @@ void require(bool isTrue) {
     }
 }
 
-/// What was taken is within its ranges, and each form of it means the same.
+/// Accepted messages are within their ranges, and both forms have the same meaning.
 void check_taken(const mw::messages::Command &command) {
     require(mw::messages::check(command).has_value());
     const std::string bytes = mw::messages::encode(command);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every decoder of NML messages: the first byte says which. What is taken comes back as it was.
+// Every decoder of NML messages, selected by the first byte. An accepted message is reproduced unchanged.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

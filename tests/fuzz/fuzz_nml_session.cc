@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What clients send to an NML server over the network: packets, one after the other.
+// Packets of clients to an NML server on the network, one after the other.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -18,7 +18,7 @@ constexpr std::string_view CHANNELS = "B a LOCMEM localhost 2000 0 0 1 4 1 TCP=1
                                       "B b LOCMEM localhost 2000 0 0 2 4 2 TCP=1 disp\n"
                                       "P s a LOCAL localhost RW 1 0 1 0\nP s b LOCAL localhost RW 1 0 1 0\n";
 
-/// A server's side, made once: the masters keep the memory.
+/// The side of the server, created once, because the masters keep the memory.
 struct Rig {
     Rig() {
         mw::diagnostics::Sink sink;

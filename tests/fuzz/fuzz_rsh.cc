@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What clients send to linuxcncrsh, in pieces; the first byte says which dialect, the second when the machine
-// is on.
+// Input of clients to linuxcncrsh, in pieces; the first byte selects the dialect, the second the time at
+// which the machine is on.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace {
 using namespace mw;
 using namespace mw::rsh;
 
-/// A machine whose task answers every other command, each at once or later.
+/// A machine whose task answers every second command, at once or later.
 struct Rig {
     Rig() {
         status->trajectory.num_joints = settings.num_joints;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a database program answers, [EMCIO]DB_PROGRAM: any bytes, to all that is asked of it. The first byte
-// says which changer and what is asked.
+// Answers of a database program, [EMCIO]DB_PROGRAM: any bytes, to all requests. The first byte selects the
+// changer and the request.
 #include <unistd.h>
 
 #include <cstddef>
@@ -28,7 +28,7 @@ const std::filesystem::path &folder() {
     return made;
 }
 
-/// Tools of one number are one; a changer that swaps has each in its own place.
+/// Tools with one number are one tool; a changer that swaps has each tool in its own pocket.
 void check(const task::ToolStore &tools) {
     std::set<int> numbers;
     if (tools.count() < 1) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What is read from a tool table must be written so that it reads the same again, for both kinds of changers,
-// and so must the life of tools.
+// A tool table that was read must be written so that it reads the same again, for both types of changers, and
+// so must the life of tools.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

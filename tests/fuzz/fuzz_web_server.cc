@@ -73,7 +73,7 @@ std::string frames(std::string_view bytes) {
     return out;
 }
 
-/// Sends all of it, and reads until the server has had enough of it or nothing more comes.
+/// Sends all data, and reads until the server has closed or sends nothing more.
 void talk(Rig &rig, std::string_view bytes) {
     const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     sockaddr_in place{};

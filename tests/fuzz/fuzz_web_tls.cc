@@ -14,7 +14,7 @@
 #include "tests/fuzz/web_rig.hh"
 
 #pragma clang diagnostic ignored                                                                             \
-    "-Wdeprecated-declarations"  // of RAND_METHOD: there is no other for all of OpenSSL
+    "-Wdeprecated-declarations"  // for RAND_METHOD, which is the only interface for all of OpenSSL
 
 namespace {
 
@@ -86,7 +86,7 @@ struct Rig {
         return "GET /api/machine HTTP/1.1\r\n" + host(server->remote_port()) + "Authorization: Bearer " +
                TOKEN + "\r\n\r\n";
     }
-    /// The screen of this computer asks and is answered.
+    /// The screen of this computer sends a request and receives its answer.
     void require_answer() {
         own->think();
         const std::size_t before = own->taken;
@@ -162,7 +162,7 @@ void act(Rig &rig, TlsPeer &peer, Script &script) {
     case 0: peer.think(); break;
     case 1: peer.send(size); break;
     case 2: peer.send(); break;
-    case 3:  // a bit is spoiled
+    case 3:  // a bit is inverted
         if (!peer.out.empty()) {
             char &one = peer.out[size % peer.out.size()];
             one = static_cast<char>(static_cast<unsigned char>(one) ^ (1U << (what / 11 % 8)));

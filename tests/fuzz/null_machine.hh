@@ -26,7 +26,7 @@ class NullMachine : public gcode::MachineCanon,
     }
 
     void begin_block(const gcode::BlockRef &) override {}
-    /// Is stopped at the end of each move; all other calls are done immediately.
+    /// The machine stops at the end of each move; all other calls are done immediately.
     void take(const gcode::MachineCall &call) override {
         if (const auto *line = std::get_if<gcode::LineMove>(&call)) {
             state_.position = line->end;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What compiles components with the program halcompile and loads them into an instance under virtual time.
+// Compiles components with the program halcompile and loads them into an instance under virtual time.
 #pragma once
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@
 namespace mw::hal {
 namespace fs = std::filesystem;
 
-/// A folder for what is compiled, unlike that of any other test.
+/// A folder for compiled files, separate from that of any other test.
 struct Folder {
     fs::path path = fs::path(::testing::TempDir()) / ("mw_corpus_" + std::to_string(::getpid()));
     Folder() { fs::create_directories(path); }
@@ -27,7 +27,7 @@ struct Folder {
     }
 };
 
-/// Runs a program to its end; its exit status and what it wrote.
+/// Runs a program to its end; returns its exit status and output.
 struct Outcome {
     int status = -1;
     std::string text;
@@ -76,7 +76,7 @@ struct Corpus : ::testing::Test {
     }
     Instance &hal() { return host->hal(); }
 
-    /// Compiles a file of the corpus; its messages.
+    /// Compiles a file of the corpus; returns the messages.
     std::string compile(const std::string &file, const std::string &words = "") {
         const std::string name = fs::path(file).stem();
         const bool isProgram = file.starts_with("usr") || file == "cusr.c" || file.ends_with(".py");
@@ -95,7 +95,7 @@ struct Corpus : ::testing::Test {
         const auto done = host->load_realtime(name, args);
         return done ? "ok" : done.error().str();
     }
-    /// Puts functions into the thread and runs it for some periods.
+    /// Adds functions to the thread and runs it for some periods.
     void cycle(const std::vector<std::string> &functions, int periods = 1) {
         for (const std::string &function : functions) {
             const auto done = hal().threads().add_function(function, "t");

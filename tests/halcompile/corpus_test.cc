@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Components written as users write them, compiled by the program halcompile, loaded, and seen to work.
+// Components as users write them are compiled by the program halcompile, loaded and run.
 #include <gtest/gtest.h>
 
 #include "hal/include/hal.h"
@@ -231,7 +231,8 @@ TEST_F(Corpus, ModulesShareWhatTheyExportAndNothingElse) {
     EXPECT_TRUE(host->unload_realtime("giver"));
 }
 
-// As LinuxCNC's test halcompile/serial-out-of-tree: the header is there without the sources of the driver.
+// As in LinuxCNC's test halcompile/serial-out-of-tree, the header is available without the sources of the
+// driver.
 TEST_F(Corpus, SerialInterfacesOfBoards) {
     EXPECT_EQ(compile("serialport.comp"), "");
     const std::string refused = load_only("serialport", {"names=hm2_7i80.0.uart.0"});

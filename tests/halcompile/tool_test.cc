@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs that halcompile makes, and what else it does: installing, makefiles, messages.
+// Programs built by halcompile, and its other work: installing, makefiles, messages.
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -22,7 +22,7 @@ namespace {
 
 using Halcompile = Corpus;
 
-/// A started program, ended with the test.
+/// A started program, which is ended with the test.
 struct Program {
     pid_t pid = 0;
     explicit Program(std::vector<std::string> words) {

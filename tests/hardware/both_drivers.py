@@ -23,7 +23,7 @@ def run(halrun, board, model, texts):
                    str(folder / 'physics.txt'), '--log', str(folder / 'log')]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as program:
             program.stdout.readline()
-            # Neither driver meets a HAL of another program.
+            # The two drivers must not share a HAL with another program.
             environment = dict(os.environ, RTAPI_UID='65534', RTAPI_FIFO_PATH=str(folder / 'fifo'), MILLWRIGHT_INSTANCE=folder.name)
             apart = ['ip', 'netns', 'exec', network.host, 'unshare', '--ipc', '--pid', '--fork', '--mount-proc', '--']
             done = subprocess.run([*apart, halrun, '-f', str(folder / 'test.hal')], env=environment, capture_output=True, text=True,

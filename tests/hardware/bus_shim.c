@@ -59,7 +59,7 @@ static void write_port(uint16_t port, uint32_t value, int bytes) {
     }
 }
 
-/* An I/O instruction of a process without the right to it. */
+/* An I/O instruction of a process without the permission for it. */
 static void on_fault(int signal_number, siginfo_t *info, void *context) {
     (void)info;
     greg_t *const machine = ((ucontext_t *)context)->uc_mcontext.gregs;
@@ -86,7 +86,7 @@ int ioperm(unsigned long from, unsigned long count, int on) {
     return 0;
 }
 
-/* The handler above stays. */
+/* The handler above remains installed. */
 int sigaction(int number, const struct sigaction *action, struct sigaction *old) {
     int (*real)(int, const struct sigaction *, struct sigaction *) = dlsym(RTLD_NEXT, "sigaction");
     const int is_ours = action != NULL && action->sa_sigaction == on_fault;

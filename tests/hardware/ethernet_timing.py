@@ -75,7 +75,7 @@ def read_cycles(board):
     header = HEADER.unpack_from(data)
     if header[0] != 0x4D574359 or header[1] != 1:
         sys.exit('the record of cycles has another layout than this script')
-    # After a stop, the ring with the cycles before it.
+    # After a stop, the ring contains the cycles before it.
     stopped = header[6] in STOPPING_FAULTS
     ring = header[5] if not stopped else 1 - header[5]
     first = HEADER.size + ring * (CYCLES * CYCLE.size + 8)

@@ -26,7 +26,7 @@ DIRECTION, STATUS = 0x1100, 0x0D00
 
 
 class Board:
-    """What an independent client reads from the board."""
+    """The registers that an independent client reads from the board."""
 
     def __init__(self, port):
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -139,7 +139,7 @@ def main():
         board = subprocess.Popen([f'{options.binaries}/hm2-board', '--listen', f'127.0.0.1:{port}', '--model', '7i76e'], stdout=subprocess.PIPE, text=True)
         try:
             if not board.stdout.readline().startswith('hm2-board: '):
-                continue  # another program has this port
+                continue  # another program uses this port
             slowest[kind] = max(slowest.get(kind, 0), one_kill(options, port, kind, rng))
         finally:
             board.kill()

@@ -57,8 +57,8 @@ loadusr -w sleep 0.5
 show pin hm2_7i76e.0.watchdog
 '''
 
-# Other models: what is connected, parameters of hm2_eth, further HAL lines, and pins (without the name of the board) with their values. A
-# number may differ by a hundredth.
+# Other models: connected cards, parameters of hm2_eth, further HAL lines, and pins (without the name of the
+# board) with their values. A number may differ by a hundredth.
 CASES = {
     '7i80hd-3pwm': ('', 'num_leds=4', """
 setp BOARD.3pwmgen.00.enable 1
@@ -108,7 +108,7 @@ loadusr -w sleep 1
 show pin BOARD
 show param BOARD.io_error
 """
-# What the driver says when it does not like something.
+# Messages of the driver about faults.
 COMPLAINT = re.compile(r'(?i)\b(error|warning|fail(?:ed|ure)?|unknown|unsupported|not supported|inconsistent)\b')
 
 
@@ -200,7 +200,7 @@ def check(output, log):
         return ['the driver has not loaded:\n' + output[-3000:]]
     if abs(float(value('stepgen.00.position-fb')) - wanted) > 0.005:
         problems.append(f'position-fb is {value("stepgen.00.position-fb")}, not {wanted}')
-    # The motor has made the whole steps of the accumulator; each is 20 counts.
+    # The motor has made the whole steps of the accumulator, each of 20 counts.
     accumulators = re.findall(r'R0 0x2100 5x32 (\w{8})', log)
     raw = int(value('encoder.00.rawcounts'))
     if raw % 20 != 0 or abs(raw // 20 - steps) > 1:
@@ -210,7 +210,7 @@ def check(output, log):
         problems.append(f'accumulator {moved} steps, encoder {raw} counts')
     if value('encoder.00.index-enable') != 'FALSE':
         problems.append('index-enable has not been cleared')
-    # The index is at 1000 counts: there the position becomes 0.
+    # The index is at 1000 counts, where the position becomes 0.
     if int(value('encoder.00.count')) != raw - 1000:
         problems.append(f'count is {value("encoder.00.count")} after the index, not {raw - 1000}')
     if value('gpio.017.in') != 'TRUE':

@@ -125,7 +125,7 @@ def cycle_of(lines):
 
 
 def differences(what, theirs, ours):
-    """Of two sets of rows; nothing loaded is a difference, too."""
+    """Differences between two sets of rows; an empty set is a difference, too."""
     if not theirs or not ours:
         return [f'{what}: LinuxCNC has {len(theirs)} pins and parameters, ours {len(ours)}']
     return [f'{what}: only {whose}: {" ".join(row)}' for whose, rows in (('LinuxCNC', theirs - ours), ('ours', ours - theirs))
@@ -146,7 +146,7 @@ def check_bus(bench, models, bus):
 
 
 def add_card(folder, numbers, image):
-    """A card with registers in each region, in folders that are mounted over those of the kernel."""
+    """A card with registers in each region, in folders that are mounted over the folders of the kernel."""
     name, names = '0000:00:00.0', ('vendor', 'device', 'subsystem_vendor', 'subsystem_device')
     pci, devices = folder / 'pci', folder / 'devices'
     for old in (pci, devices):

@@ -25,7 +25,7 @@ def errors(halrun, folder, pattern):
     hal.write_text(f'loadrt hostmot2\nloadrt hm2_test test_pattern={pattern}\n')
     done = subprocess.run([halrun, '-f', str(hal)], cwd=folder, capture_output=True, text=True, timeout=60, check=False,
                           env=dict(os.environ, MILLWRIGHT_INSTANCE=f'idrom{os.getpid()}'))
-    # The last lines are of the program that loads modules.
+    # The last lines come from the program that loads modules.
     lines = [line for line in done.stderr.splitlines() if line.startswith('hm2')]
     return [line for line in lines if 'rtapi_app_main' not in line and 'not loaded' not in line]
 

@@ -17,7 +17,7 @@ import linuxcnc_board
 FOLDER = pathlib.Path(__file__).parent
 CONFIG = ('stepgen_width=6 enable_raw ssi_chan_0=error%1bposition%24ge '
           'biss_chan_0=position%24mex%2pfld%3funs%5usig%6s fanuc_chan_0=AA64')
-# Pins and values that are set one after the other; several in one step with ";".
+# Pins and values that are set one after the other; ";" separates several values of one step.
 STEPS = '''
 oneshot.00.enable1 1
 oneshot.00.enable2 1
@@ -66,7 +66,7 @@ resolver.excitation-khz 5
 resolver.excitation-khz 2.5
 stepgen.00.swap_step_dir 1
 '''.strip().split('\n')
-# Registers that differ on purpose, with what drivers/mesa/hostmot2/README.md says of them.
+# Registers that differ on purpose, with the reason from drivers/mesa/hostmot2/README.md.
 DIFFERENT = {
     0x1700: 'Fanuc is set up', 0x1900: 'Fanuc is set up', 0x1800: 'timer-number is 1', 0x4C00: 'timer-number is 1', 0x6B00: 'timer-number is 1',
     0x4800: 'dead time is rounded up', 0x4804: 'dead time is rounded up', 0x2200: 'read back before it is written', 0x2204: 'read back before it is written',

@@ -74,7 +74,7 @@ def hal(mode):
 
 
 def outputs(log):
-    """The words of the cards at each change of the lamp, as the last exchange took them."""
+    """The words of the cards at each change of the lamp, from the last exchange."""
     words, taken, lamp, steps = {}, {}, '00000000', []
     for address, value in re.findall(r'W0 0x(5[A-F]\w\w|0200) 1x32 (\w+)', log):
         if address == '0200':

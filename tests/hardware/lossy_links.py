@@ -17,7 +17,7 @@ import tempfile
 import linuxcnc_board
 
 SKIPPED = 77
-# Loading needs each packet in LinuxCNC: the faults begin later.
+# LinuxCNC's driver needs each packet while it loads, so the faults begin later.
 START_S = 12
 CASES = {
     'none': '',
@@ -52,7 +52,7 @@ def run(halrun, board, faults, seconds):
                    str(folder / 'faults.txt')]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as program:
             program.stdout.readline()
-            # Neither driver meets a HAL of another program.
+            # The two drivers must not share a HAL with another program.
             environment = dict(os.environ, RTAPI_UID='65534', RTAPI_FIFO_PATH=str(folder / 'fifo'), MILLWRIGHT_INSTANCE=folder.name)
             apart = ['ip', 'netns', 'exec', network.host, 'unshare', '--ipc', '--pid', '--fork', '--mount-proc', '--', 'chrt', '-f', '50']
             done = subprocess.run([*apart, halrun, '-f', str(folder / 'test.hal')], env=environment, capture_output=True, text=True,

@@ -18,7 +18,7 @@ MODULES = [
     (35, 0, 1, 1, 0x8500, 5, 0, 0x1F), (19, 0, 2, 2, 0x4600, 4, 0, 3), (44, 0, 1, 2, 0x9D00, 2, 0, 1), (192, 0, 1, 1, 0x3C00, 5, 0, 0x1F),
     (5, 0xC2, 1, 2, 0x2000, 10, 0, 0x1FF), (8, 0, 1, 1, 0x6900, 4, 0, 3), (24, 0, 2, 1, 0x4A00, 4, 0, 7), (25, 0, 1, 1, 0x1500, 3, 0, 0x1F),
     (43, 0, 1, 1, 0x9200, 11, 0, 0x1FF), (199, 0, 1, 1, 0xB100, 6, 0, 0x3F), (14, 0, 1, 1, 0x5500, 3, 0x10, 7), (128, 0, 1, 1, 0x0200, 1, 0, 0)]
-# First pin, module, instance, functions of the pins from there on.
+# First pin, module, instance, and functions of the following pins.
 FUNCTIONS = [
     (0, 30, 0, [0x81, 0x82, 0x83, 0x84, 0x85, 1]), (6, 35, 0, [1, 2, 3, 4, 5, 6, 7, 8]),
     (14, 19, 0, [0x81, 0x82, 0x83, 0x84, 0x85, 0x86, 0x87, 8]), (22, 44, 0, [0x81]), (23, 44, 1, [0x81]),
@@ -79,7 +79,7 @@ class Board:
         return bytes(self.spaces[space][address:address + size])
 
     def answer(self, packet):
-        """Executes the commands of a packet; what they read."""
+        """Executes the commands of a packet; returns the data that they read."""
         data, at, pointers = bytearray(), 0, [0] * 8
         while at + 2 <= len(packet):
             (command,) = struct.unpack_from('<H', packet, at)

@@ -21,7 +21,7 @@ FOLDERS = ('by_interface/mesa',)
 DOCTOR_ONLY = {'plasma-5i20/plasma-5i20.ini': 'its switches are at a parallel port, which has no motors in virtual time',
                'hm2-servo/7i90.ini': 'its home switch is at a pin that is a step generator in the firmware of our model'}
 COUNTS_PER_REV = 4000
-# Boards that have the firmware of another one, with their ports of 24 pins.
+# Boards that have the firmware of another board, with their ports of 24 pins.
 SIMILAR = {'3x20': ('5i20', 6), '4i65': ('5i20', 3), '4i68': ('5i20', 3), '5i22': ('5i20', 4), '5i23': ('5i20', 3)}
 PROGRAMS = {'metric': 'G21 G90 G64\nG1 X2 Z-1 F100\nG1 X0 Z0\nM2\n', 'inch': 'G20 G90 G64\nG1 X0.1 Z-0.05 F5\nG1 X0 Z0\nM2\n'}
 
@@ -45,7 +45,7 @@ def model_of(board, models, folder):
 
 
 def physics_of(ini, text, folder):
-    """Servo motors that make the speed of the command with the scales of the file, and the home switch that their HAL file has; empty: none."""
+    """Servo motors that reach the speed of the command with the scales of the file, and the home switch of their HAL file; empty: none."""
     if 'hm2-servo' not in str(ini):
         return ''
     lines = []
@@ -61,7 +61,7 @@ def physics_of(ini, text, folder):
 
 
 def board_of(ini, text):
-    """Driver and board that a configuration uses; None: it has no Mesa board."""
+    """Driver and board that a configuration uses; None if it has no Mesa board."""
     driver, board = settings(text, 'HOSTMOT2', 'DRIVER'), settings(text, 'HOSTMOT2', 'BOARD')
     if driver and board:
         return driver[0], board[0]

@@ -26,7 +26,7 @@ REMOTES = 'remote 0 card=7i77\nremote 2 card=7i73\nremote 3 card=7i76\n'
 REMOTE_FACTS = {0: ('7I77', 'I/O [index 00]'), 1: ('7I77', 'Analog [index 00]'), 2: ('7I73', 'I/O_Enc_Ana_FD [index 02]'),
                 3: ('7I76', 'I/O_Spin_Ana_Enc [index 02]')}
 PIN = re.compile(r'\s(\d+)\s+IOPort\s+(\S+)(?:\s+(\d+)\s+.*\((In|Out)\))?\s*$')
-# Each run has its own address, so that runs at the same time do not meet.
+# Each run has its own address, so that simultaneous runs do not interfere.
 ADDRESS = f'127.{1 + os.getpid() % 250}.{1 + os.getpid() // 250 % 250}.9'
 
 

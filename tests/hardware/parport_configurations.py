@@ -53,7 +53,7 @@ class Machine:
 
 
 def drive(machine, program):
-    """Operates the machine: what is wrong, or ''."""
+    """Operates the machine; returns the fault, or ''."""
     if not machine.until(lambda: 'is running: instance' in machine.text() or machine.process.poll() is not None, START_S) or 'is running: instance' not in machine.text():
         return 'it does not start: ' + machine.text()[-1500:]
     import linuxcnc  # pylint: disable=import-outside-toplevel
@@ -89,7 +89,7 @@ def drive(machine, program):
     error = errors.poll()
     if error:
         return f'an error: {error}'
-    # The pins of the port have moved: what stepgen has counted is the path.
+    # The pins of the port have changed, so the count of stepgen is the path.
     position = [float(machine.hal('getp', f'stepgen.{joint}.position-fb')) for joint in range(2)]
     wanted = [status('joint_actual_position')[joint] for joint in range(2)]
     if any(abs(one - other) > 0.01 for one, other in zip(position, wanted)):

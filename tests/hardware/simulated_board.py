@@ -66,13 +66,13 @@ def drive(machine, folder, board):
     error = errors.poll()
     if error:
         return f'an error: {error}'
-    # The home switches are 2 mm from the zero points: steps that were lost would show here.
+    # The home switches are 2 mm from the zero points, so lost steps would be visible here.
     names = [f'encoder.{joint:02}.position' if board == '7i97' else f'stepgen.{joint:02}.position-fb' for joint in range(3)]
     positions = [float(machine.hal('getp', f'hm2_{board}.0.{name}')) for name in names]
     wanted = [float(machine.hal('getp', f'joint.{joint}.motor-pos-cmd')) for joint in range(3)]
     if any(abs(one - other) > 0.02 for one, other in zip(positions, wanted)):
         return f'the motors are at {positions}, not at {wanted}'
-    # The board is gone in the middle of a cut: the machine stops and says why.
+    # The board is lost in the middle of a cut: the machine stops and reports the reason.
     if not run(machine, linuxcnc, folder, LONG):
         return f'the long program does not run: {errors.poll()}'
     machine.until(lambda: status('current_vel') > 1, 5)
@@ -90,7 +90,7 @@ def run_sample(programs, root, board):
         shutil.copytree(root / 'configs' / 'mesa', folder / 'configs' / 'mesa')
         mesa, port = folder / 'configs' / 'mesa', free_port()
         ini = mesa / f'{board}.ini'
-        # Limits for a computer without realtime: cycles come late.
+        # Limits for a computer without realtime, on which cycles are late.
         text = ini.read_text().replace('BOARD_IP = 127.0.0.1', f'BOARD_IP = 127.0.0.1:{port}')
         ini.write_text(text)
         for file in (ini, mesa / 'stepper_mill.inc'):
@@ -112,7 +112,7 @@ def run_sample(programs, root, board):
 def main():
     programs, root = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     boards = sys.argv[3:] or sorted(path.stem for path in (root / 'configs' / 'mesa').glob('*.ini'))
-    # One process for each: the Python module is bound to one machine.
+    # One process for each, because the Python module is bound to one machine.
     if len(boards) == 1:
         return 1 if run_sample(programs, root, boards[0]) else 0
     return max(subprocess.run([sys.executable, __file__, programs, root, board], check=False).returncode for board in boards)

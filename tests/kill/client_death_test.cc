@@ -69,7 +69,7 @@ TEST_F(ClientDeath, TheCutGoesOnAndItsRightToOperateEnds) {
         slowest_s = std::max(slowest_s, std::chrono::duration<double>(Clock::now() - killed).count());
         const auto goes_on = client->wait_until([&] { return line_now() > line + 3 || !isCutting(); }, 30);
         ASSERT_TRUE(goes_on.has_value()) << "the cut is stopped";
-        // A short one may have ended meanwhile.
+        // A short program may have ended meanwhile.
         EXPECT_TRUE(isCutting() || client->status().task.programs_ended > 0);
         EXPECT_EQ(client->status().task.state, messages::State::ON);
         ASSERT_NO_FATAL_FAILURE(ask(messages::SetOptionalStop{true}));
@@ -78,7 +78,7 @@ TEST_F(ClientDeath, TheCutGoesOnAndItsRightToOperateEnds) {
               << " ms after the kill at the latest\n";
 }
 
-/// A touch-off is on the disk half a second later, also if the machine is killed.
+/// A touch-off is on the disk half a second later, even if the machine is killed.
 TEST_F(ClientDeath, ATouchOffOutlivesTheMachine) {
     for (int i = 0; i < count_kills(); ++i) {
         SCOPED_TRACE(i);

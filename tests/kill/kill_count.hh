@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How often the tests of deaths kill.
+// Number of kills in the tests of deaths.
 #pragma once
 
 #include <cstdlib>

@@ -59,7 +59,7 @@ std::string content(const fs::path &path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Joins the machine's shared memory once its motion controller is there.
+/// Joins the machine's shared memory when its motion controller exists.
 struct Observer {
     std::unique_ptr<hal::Instance> hal;
     motion::Channels *channels = nullptr;
@@ -84,8 +84,8 @@ struct Observer {
         return false;
     }
 
-    /// Not next to rest, as at the square's corners, nor stopped by the watchdog of a computer that is too
-    /// busy.
+    /// Neither close to standstill, as at the corners of the square, nor stopped by the watchdog because the
+    /// computer is too busy.
     bool isAtFeed() const {
         motion::PublishedStatus::Copy status;
         return channels->status.read(status) && status.value.isEnabled &&
@@ -183,7 +183,7 @@ TEST(Kill, TheDeathOfTaskStopsTheMachineAlongThePath) {
     std::srand(static_cast<unsigned>(::getpid()));
     const fs::path folder = fs::temp_directory_path() / ("mw_kill_" + std::to_string(::getpid()));
     fs::create_directory(folder);
-    fs::copy(MW_SOURCE_DIR "/configs/sim", folder / "sim");  // the journal lies beside the machine's files
+    fs::copy(MW_SOURCE_DIR "/configs/sim", folder / "sim");  // the journal is next to the machine's files
     write_program(folder / "square.ngc");
     const int kills = mw::testing::count_kills(2);
     int judged = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The realtime process of `millwright run` is killed, or a component crashes in it or in virtual time: told
-// at once and by name, with a status, and nothing is left behind.
+// The realtime process of `millwright run` is killed, or a component crashes in it or in virtual time: this
+// is reported at once and by name, with a status, and nothing is left behind.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -80,7 +80,7 @@ class RealtimeDeath : public ::testing::Test {
         return pid;
     }
 
-    /// Joins the HAL once the program moves; null when it never does.
+    /// Joins the HAL when the program moves; null if it never does.
     std::unique_ptr<hal::Instance> join_moving(pid_t task) const {
         std::unique_ptr<hal::Instance> hal;
         motion::Channels *channels = nullptr;
@@ -107,7 +107,7 @@ class RealtimeDeath : public ::testing::Test {
 
     std::string log() const { return content(folder / "log"); }
 
-    /// The seconds from `since` until the log has `text`; negative when it never came.
+    /// The seconds from `since` until the log has `text`; negative if it never appears.
     double wait_for(const std::string &text, Clock::time_point since) const {
         while (Clock::now() < since + std::chrono::seconds(20)) {
             if (log().find(text) != std::string::npos) {
@@ -138,7 +138,7 @@ int wait_for_end(pid_t process) {
 }
 
 TEST_F(RealtimeDeath, AKilledRealtimeProcessEndsTheRunWithin50ms) {
-    // Only kills are timed during which the machine gave its processors to this test.
+    // Only kills during which the machine left its processors to this test are timed.
     const int least = mw::testing::count_kills(3);
     std::vector<double> seconds;
     int count = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine that cuts is killed with kill -9, comes up again without a hand being put to anything, and goes
-// on with its program where it was; again and again.
+// A machine that is cutting is killed with kill -9, starts again without any manual action, and continues its
+// program at the same position; repeatedly.
 #include <deque>
 #include <iostream>
 
@@ -12,7 +12,7 @@ namespace {
 
 class KillRecovery : public StartedMachine {
   protected:
-    /// Lets it cut behind line `from` and kills it; the bounds of what must be offered.
+    /// Lets the machine cut past line `from` and kills it; returns the bounds of the expected offer.
     struct Bounds {
         int low = 0, high = 0;
     };
@@ -23,7 +23,7 @@ class KillRecovery : public StartedMachine {
         while (Clock::now() < deadline && line_now() <= from && isUnderWay()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
-        if (line_now() <= from) {  // a computer that is overloaded stops its machine: the place stays
+        if (line_now() <= from) {  // an overloaded computer stops its machine: the position is kept
             ++stopped;
             std::cout << "stopped before line " << from << ": " << client->outcome(run).reason << "\n";
             kill_machine();

@@ -17,10 +17,10 @@ enum class Trouble : std::uint8_t {
     LINK_DOWN,
     POWER_OFF,
     RESET,     ///< the board restarts at once
-    WATCHDOG,  ///< it bites without a cause
+    WATCHDOG,  ///< the watchdog bites without a cause
 };
 
-/// Moves at random, then a trouble, then rest.
+/// Random moves, then a fault, then rest.
 struct Act {
     int moving_cycles = 0;
     Trouble trouble = Trouble::NONE;
@@ -30,7 +30,7 @@ struct Act {
 
 struct Plan {
     unsigned seed = 1;
-    bool usable = true;   ///< a machine can work at this network
+    bool usable = true;   ///< a machine can work with this network
     std::string network;  ///< lines to_board and to_host of the fault table
     double steps_per_mm = 100, max_accel = 3000, accel = 2000, speed = 100;
     int watchdog_ms = 5;
@@ -41,7 +41,7 @@ struct Plan {
 };
 
 Plan make_plan(unsigned seed);
-/// Only what `kept` names (campaign_runner/kept.hh); empty: all.
+/// Only the parts named in `kept` (campaign_runner/kept.hh); empty: all.
 Plan reduced(Plan plan, const std::string &kept);
 
 }  // namespace mw::mesa_campaign

@@ -69,7 +69,7 @@ class IndexJudge {
         good_cycles_ = 0;
         crossed_at_ = -1;
     }
-    /// The board has lost its registers: what it saw before does not count.
+    /// The board has lost its registers: its earlier values do not count.
     void restart() { lost_ = armed_; }
     bool isArmed() const { return armed_; }
 
@@ -83,7 +83,7 @@ class IndexJudge {
         }
         written_low_ = std::min(written_low_, steps);
         written_high_ = std::max(written_high_, steps);
-        // On the index itself its level has changed once: which edge latches is the polarity's.
+        // On the index itself its level has changed once; the polarity determines the edge that latches.
         if (crossed_at_ < 0 && revolution(written_low_ + 1) < revolution(written_high_ - 2)) {
             crossed_at_ = good_cycles_;
         }
@@ -112,13 +112,13 @@ class IndexJudge {
         return static_cast<std::int64_t>(
             std::floor(static_cast<double>(steps - INDEX_STEPS) / static_cast<double>(STEPS_PER_REV)));
     }
-    /// Good cycles after which an arm has reached the board, and after which a latch has come back.
+    /// Good cycles after which an arm has reached the board, and after which a latch has been returned.
     static constexpr int WRITTEN = 3, PATIENCE = 30;
     static constexpr std::int64_t MOVE_OF_A_CYCLE = 25;
 
     bool armed_ = false, lost_ = false;
     std::int64_t low_ = 0, high_ = 0;                  ///< steps of the shaft since the arm
-    std::int64_t written_low_ = 0, written_high_ = 0;  ///< since the board has the arm
+    std::int64_t written_low_ = 0, written_high_ = 0;  ///< since the board has received the arm
     int good_cycles_ = 0, crossed_at_ = -1;
 };
 
@@ -167,8 +167,8 @@ class Session {
   private:
     enum class State : std::uint8_t {
         RUNNING,
-        FAULTED,   ///< the operator has not seen it yet
-        CLEARING,  ///< the operator has cleared it and looks whether it stays away
+        FAULTED,   ///< the operator has not seen the fault yet
+        CLEARING,  ///< the operator has cleared the fault and checks whether it returns
     };
 
     bool good() const { return verdict_.fault.empty(); }
@@ -185,7 +185,7 @@ class Session {
                        what);
         }
     }
-    /// After it the watchdog of the board has bitten, when nothing is written any more.
+    /// Time after which the watchdog of the board has bitten if nothing is written.
     std::int64_t watchdog_ns() const {
         return plan_.watchdog_ms * MS + Rig::PERIOD_NS + plan_.max_delay_ns + MS / 2;
     }
@@ -246,7 +246,8 @@ class Session {
         rig_.pins.set("stepgen.00.enable", 0);
     }
 
-    /// How far a motor at a stale rate can come from its command, and until it has caught up again [mm].
+    /// Maximum deviation of a motor at a stale rate from its command, and the time until it has caught up
+    /// [mm].
     double way_of_failures() const {
         const double time_s = (failed_run_ + 2) * PERIOD_S;
         const double velocity = std::min(plan_.accel * time_s, 2 * plan_.speed);
@@ -317,14 +318,14 @@ class Session {
         state_ = State::RUNNING;
         start_mm_ = command_.position();
         start_steps_ = static_cast<double>(steps());
-        // The step generator has whole steps where the position has none.
+        // The step generator counts whole steps, the position does not.
         allowed_steps_ = 0;
         resting_cycles_ = 0;
         measure_frame();
         rig_.pins.set("stepgen.00.enable", 1);
     }
 
-    /// The shaft is at rest: how the counts of the encoder belong to its steps.
+    /// The shaft is at rest: relation between the counts of the encoder and its steps.
     void measure_frame() {
         frame_counts_ =
             static_cast<std::int64_t>(rig_.pins.get("encoder.00.rawcounts")) - COUNTS_PER_STEP * steps();

@@ -10,14 +10,15 @@
 
 namespace mw::mesa_campaign {
 
-/// What a session has had.
+/// Events and figures of a session.
 struct Verdict {
     std::uint64_t cycles = 0, failed_cycles = 0, stops = 0, bites = 0, arms = 0, latches = 0, losses = 0;
-    double worst_steps = 0;  ///< largest distance of the motor from its command, over the bound of rule 1
-    std::string fault;       ///< "rule: what"; empty: none
+    double worst_steps = 0;  ///< largest distance of the motor from its command, divided by the bound of rule
+                             ///< 1
+    std::string fault;       ///< "rule: text"; empty: none
 };
 
-/// `told`: where events are printed; nullptr: nowhere.
+/// `told`: stream for the events; nullptr: none.
 Verdict run_session(const Plan &plan, std::FILE *told);
 
 }  // namespace mw::mesa_campaign

@@ -15,7 +15,7 @@ namespace {
 namespace files = std::filesystem;
 
 constexpr std::size_t MOST_CYCLES = 400000;
-constexpr std::size_t A_SECOND = 1000;  ///< of task's cycles
+constexpr std::size_t A_SECOND = 1000;  ///< in cycles of task
 /// Moves of the approach, including those of a tool change.
 constexpr std::size_t MOST_APPROACH_MOVES = 8;
 
@@ -33,7 +33,7 @@ Recording run_undisturbed(const Job &job, const files::path &folder, std::string
     return rig.recording;
 }
 
-/// What is skipped, and what of the cutting of more than a second ago is made again.
+/// The skipped part, and the part cut more than a second before the power cut that is repeated.
 std::string check_place(const Recording &whole, std::size_t cut, std::uint64_t offered, int &late_ms) {
     const auto &under = whole.under_tool;
     for (std::size_t i = cut + 1; i < under.size(); ++i) {
@@ -45,7 +45,7 @@ std::string check_place(const Recording &whole, std::size_t cut, std::uint64_t o
     for (std::size_t i = 0; i < under.size(); ++i) {
         ends[under[i]] = i;
     }
-    std::size_t first = cut;  // when the first block was done that is made again
+    std::size_t first = cut;  // time at which the first repeated block was done
     for (const auto &[block, end] : ends) {
         first = block != 0 && block >= offered ? std::min(first, end) : first;
     }
@@ -71,7 +71,7 @@ std::string check_calls(const Recording &whole, const Recording &rest, std::uint
     return rest.parameters == whole.parameters ? "" : "other parameters at the end";
 }
 
-/// Runs until the cut and loses its power; true when the program has ended before.
+/// Runs until the power cut and loses power; true if the program has ended before.
 bool cut_short(const Job &job, Rig &rig, std::mt19937_64 &random, std::size_t cut, const Recording &whole,
                std::string &trouble) {
     trouble = rig.come_up(job.mdi);
@@ -97,7 +97,7 @@ Verdict judge_power_cut(std::uint64_t seed, const files::path &folder) {
     Verdict verdict;
     files::remove_all(folder);
     const Recording whole = run_undisturbed(job, folder, verdict.trouble);
-    if (verdict.trouble.contains("exceeds the soft limit")) {  // offsets by chance: no program to judge
+    if (verdict.trouble.contains("exceeds the soft limit")) {  // random offsets: no program to judge
         return {"no program", "", 0};
     }
     if (!verdict.trouble.empty()) {

@@ -16,7 +16,7 @@ class Writer {
     double number(int low, int high) { return whole(low * 1000, high * 1000) / 1000.0; }
     bool chance(int of) { return random_() % static_cast<unsigned>(of) == 0; }
 
-    /// Straight moves and arcs that lead on from each other.
+    /// Straight moves and arcs that are connected to each other.
     std::string contour() {
         std::string out = fmt::format("G1 Z{:.3f}\n", number(-4, 1));
         for (int i = whole(3, 12); i > 0; --i) {
@@ -37,7 +37,7 @@ class Writer {
         }
         return out + "G80\n";
     }
-    /// A square with the tool beside it.
+    /// A square with the tool at its side.
     std::string compensated() {
         const double a = number(10, 18);
         return fmt::format("G0 X0 Y0 Z2\nG41.1 D{:.3f} G1 X{:.4f} Y-2\nY{:.4f}\nG3 X{:.4f} Y{:.4f} R2\nG1 "

@@ -25,7 +25,7 @@ class RecoveryTest : public ::testing::Test {
         rig.reset();
         files::remove_all(folder);
     }
-    /// Runs until the move of this line is under the tool, and a little on.
+    /// Runs until the tool executes the move of this line, and a little longer.
     void run_to(const std::string &program, int line, int from_line = 0) {
         ASSERT_EQ(rig->begin(program, from_line), "");
         for (int i = 0; i < 60000 && status().task.motion_line != line; ++i) {
@@ -129,7 +129,7 @@ TEST_F(RecoveryTest, AnEmergencyStopLeavesAnOfferAnAbortAndAnErrorNone) {
     EXPECT_FALSE(offer().isOffered);
 }
 
-/// A program that is left in the middle, and whose tool has got another length before it is come back to.
+/// A program that is left in the middle and whose tool gets another length before the return.
 class NewLengthTest : public RecoveryTest {
   protected:
     void leave(const std::string &program, int line) {
@@ -146,7 +146,7 @@ class NewLengthTest : public RecoveryTest {
         entry.offset[geometry::AXIS_Z] = z;
         ASSERT_EQ(rig->ask(entry), "");
     }
-    /// Until the way is proposed; false when the program ends instead.
+    /// Runs until the return path is proposed; false if the program ends instead.
     bool resume() {
         EXPECT_EQ(rig->ask(messages::ResumeProgram{}), "");
         for (int i = 0; i < 1000 && status().approach.number == 0 && !rig->hasEnded(); ++i) {
@@ -268,7 +268,7 @@ TEST_F(NewLengthTest, WhereItCannotBeKnownTheProgramEndsAndSaysWhy) {
     EXPECT_FALSE(resume()) << "it is another program meanwhile";
 }
 
-/// A program whose state at the place depends on what only the machine knew.
+/// A program whose state at that position depends on data that only the machine knew.
 struct Doubtful {
     const char *name, *program;
     int line;

@@ -104,7 +104,7 @@ std::string Rig::come_up(const std::vector<std::string> &mdi) {
     return ask(messages::SetMode{messages::Mode::AUTO});
 }
 
-/// The interpreter reads them from a real file: as the disk has it.
+/// The interpreter reads a real file, with the contents of the disk.
 void Rig::find_parameters() {
     files::remove(folder_ / "p.var");
     if (disk_.names.contains(folder_ / "p.var")) {

@@ -17,39 +17,40 @@
 
 namespace mw::power_cut {
 
-/// A move as it was handed to the planner, with what was on: every bit of it.
+/// A move as the planner received it, with the active state; every bit counts.
 struct Call {
-    std::uint64_t id = 0;  ///< another one in each run
+    std::uint64_t id = 0;  ///< a different number in each run
     std::uint32_t block = 0;
     std::string bits;
     bool operator==(const Call &other) const { return block == other.block && bits == other.bits; }
 };
 
-/// How a run went.
+/// The result of a run.
 struct Recording {
     std::vector<Call> calls;
     /// For each millisecond: the block of the current move as motion reports it, 0 for none.
     std::vector<std::uint32_t> under_tool;
-    std::string parameters;  ///< the parameter file after it
+    std::string parameters;  ///< the parameter file after the run
     bool isDone = false;
 };
 
-/// From an empty machine to its end; all errors are texts.
+/// Runs from an empty machine to its end; all errors are texts.
 class Rig {
   public:
-    /// `folder` is its own; the machine's files are copied there.
+    /// `folder` is a separate folder; the machine's files are copied there.
     Rig(std::filesystem::path folder, journal::test::TornDisk &disk);
     ~Rig();
 
-    /// Comes up, switched on and homed; with MDI lines before the program. Empty, or what went wrong.
+    /// Starts, switches on and homes the machine, with MDI lines before the program. Returns an empty text,
+    /// or the error.
     std::string come_up(const std::vector<std::string> &mdi);
-    /// Everything of the process is gone; `disk` has lost its power already.
+    /// All data of the process are lost; `disk` has already lost its power.
     void die();
 
     std::string begin(const std::string &program, int from_line = 0);
-    /// One cycle of task; the journal is written when its time has come.
+    /// One cycle of task; the journal is written when it is due.
     void cycle(std::mt19937_64 &random);
-    /// Neither running nor asked for.
+    /// No program is running or requested.
     bool hasEnded() const;
     std::string outcome();
     const messages::MachineStatus &status();
@@ -57,15 +58,15 @@ class Rig {
     /// the rejection.
     std::string recover();
 
-    /// Done, or why not.
+    /// Returns an empty text when done, otherwise the reason.
     std::string ask(const messages::Command &command, int limit = 20000);
     machine::Machine &machine() { return *machine_; }
     const std::filesystem::path &folder() const { return folder_; }
 
     Recording recording;
-    /// A power cut comes in the middle of a write of the journal, after so many steps; negative: not yet.
+    /// A power cut during a write of the journal, after this number of steps; negative: none.
     long steps_in_write = -1;
-    /// The journal's thread is late by up to so much. [ms]
+    /// Maximum delay of the journal's thread. [ms]
     int most_late_ms = 300;
 
   private:
@@ -83,7 +84,7 @@ class Rig {
     std::unique_ptr<machine::Machine> machine_;
     client::Serial run_ = 0;
     int late_ms_ = -1;
-    std::size_t told_ = 0;  ///< moves that motion has come to
+    std::size_t told_ = 0;  ///< moves that motion has reached
 };
 
 }  // namespace mw::power_cut

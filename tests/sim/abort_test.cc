@@ -141,7 +141,7 @@ TEST_F(AbortTest, AFaultOfTheToolChangerIsInTheParameters) {
     EXPECT_EQ(messages(), "0 0\n");
 }
 
-/// The axes still brake when the next line comes: it begins where they stop.
+/// The axes still brake when the next line arrives; it begins at their stop position.
 TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest) {
     switch_on();
     start("G21 G90 F6000\nG1 X100\nM2\n");
@@ -165,7 +165,7 @@ TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest) {
     }
 }
 
-/// Whenever the abort comes: the machine stops, cleans up once, and takes the next line.
+/// At any time of the abort, the machine stops, cleans up once, and executes the next line.
 TEST_F(AbortTest, AnAbortInAnyCycleLeavesAMachineThatGoesOn) {
     switch_on_with("(debug,because %d#1)\nM65 P0\n");
     constexpr double FASTEST_MM_S = 200.0, PERIOD_S = 1e-3;
@@ -205,7 +205,7 @@ TEST_F(AbortTest, AnAbortInAnyCycleLeavesAMachineThatGoesOn) {
     }
 }
 
-/// What was read ahead and never came into force: displays, motion and the next line agree about it.
+/// Displays, motion and the next line agree about the blocks that were read ahead and never became active.
 TEST_F(AbortTest, AfterAnAbortTheCodesAreThoseOfTheExecutedBlock) {
     switch_on();
     EXPECT_EQ(mdi("G10 L2 P2 X10"), task::Progress::DONE);

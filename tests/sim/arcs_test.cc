@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Arcs as CAM systems write them, ends and centres rounded, on machines with two and three axes: each runs,
-// and what the machine did is compared with the figures of the program.
+// and the motion of the machine is compared with the figures of the program.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -32,7 +32,7 @@ class RoundedArcsTest : public VirtualMachineTest {
     struct Expected {
         double centre[2] = {}, radius = 0;
     };
-    /// A chain of arcs, each from where the one before has ended; line numbers start at 2.
+    /// A chain of arcs, each from the end of the previous arc; line numbers start at 2.
     std::string program(unsigned seed, const Plane &plane, int decimals, bool isRadius, int count) {
         std::mt19937 random(seed);
         const auto real = [&](double low, double high) {
@@ -49,7 +49,7 @@ class RoundedArcsTest : public VirtualMachineTest {
             double offset[2] = {rounded(-radius * std::cos(from), decimals),
                                 rounded(-radius * std::sin(from), decimals)};
             const double to = from + (isLeft ? sweep : -sweep);
-            // Back towards the middle where it has gone far.
+            // Turns back towards the middle when far away from it.
             for (int i = 0; i < 2; ++i) {
                 const double end = at[i] + offset[i] + radius * (i == 0 ? std::cos(to) : std::sin(to));
                 if (std::abs(end) > 40) {
@@ -67,7 +67,7 @@ class RoundedArcsTest : public VirtualMachineTest {
             }
             const std::string where = fmt::format("{}{:.{}f} {}{:.{}f}", plane.first_letter, end[0], decimals,
                                                   plane.second_letter, end[1], decimals);
-            // In G18 the first axis is Z and the second X, so left is still G3.
+            // In G18 the first axis is Z and the second X, so G3 still turns to the left.
             const char *code = isLeft ? "G3" : "G2";
             const double r = rounded(std::hypot(offset[0], offset[1]), decimals);
             text += isRadius ? fmt::format("{} {} R{:.{}f}\n", code, where, r, decimals)

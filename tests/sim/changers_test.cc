@@ -34,7 +34,7 @@ class ChangerTest : public VirtualMachineTest {
     }
     void set(const std::string &name, bool isOn) { set_pin("iocontrol.0." + name, isOn ? "1" : "0"); }
     geometry::Pose place() const { return motion().carte_pos_cmd; }
-    /// Answers like a changer until the pin `request` is on, which it leaves unanswered; false when it never
+    /// Answers like a changer until the pin `request` is on, which it does not answer; false if the pin never
     /// is.
     bool run_until(const std::string &request) {
         for (int i = 0; i < 20000 && !pin(request); ++i) {
@@ -85,8 +85,8 @@ TEST_F(ChangerTest, TOOL_CHANGE_AT_G30IsWhereToolsAreChanged) {
     EXPECT_EQ(finish(), task::Progress::DONE) << messages();
     EXPECT_NEAR(place()[0], 7, 1e-9);
     EXPECT_NEAR(place()[1], 40, 1e-9) << "the next move begins there";
-    // A line of MDI in inches, in another coordinate system and with a tool offset: the place is the
-    // machine's.
+    // A line of MDI in inches, in another coordinate system and with a tool offset: the position is in
+    // machine coordinates.
     ASSERT_EQ(mdi("G10 L2 P2 X9 Y8 Z7"), task::Progress::DONE);
     ASSERT_EQ(mdi("G55 G43 H3 G20"), task::Progress::DONE);
     ask(task::SetMode{task::Mode::MDI});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every machine of configs/sim homes again and again: homed, unhomed, and from anywhere in its range.
+// Every machine of configs/sim homes repeatedly: already homed, unhomed, and from any position in its range.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -49,7 +49,8 @@ class HomingSamplesTest : public VirtualMachineTest, public ::testing::WithParam
         const auto id = ask(task::UnhomeJoint{-1});
         ASSERT_EQ(wait(id), task::Progress::DONE) << reason(id);
     }
-    /// Jogs all joints to a part of the distance to one of their limits; joints of one axis stay together.
+    /// Jogs all joints by a fraction of the distance to one of their limits; joints of one axis move
+    /// together.
     void move_joints(double part) {
         ASSERT_EQ(wait(ask(task::SetTeleop{false})), task::Progress::DONE);
         const motion::Settings &settings = machine_->task().motion_settings();

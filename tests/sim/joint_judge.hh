@@ -56,7 +56,7 @@ class JointJudge {
     }
     /// Samples judged.
     std::size_t count() const { return count_; }
-    /// Empty: nothing has left its limits.
+    /// Empty if no joint has exceeded its limits.
     std::string report() const { return past_ + (checker_ ? checker_->report() : std::string()); }
 
   private:

@@ -37,7 +37,7 @@ Names names_in(const std::string &folder) {
     return names;
 }
 
-/// What this process holds, and what it may have made elsewhere.
+/// The resources that this process holds, and those that it may have created elsewhere.
 std::map<std::string, std::size_t> held() {
     std::map<std::string, std::size_t> all;
     all["descriptors"] = names_in("/proc/self/fd").size();
@@ -56,7 +56,7 @@ std::map<std::string, std::size_t> held() {
     return all;
 }
 
-/// Of this process; others run beside it.
+/// Of this process only, because others run at the same time.
 Names shared_memory() {
     Names ours;
     const std::string mark = std::to_string(::getpid());
@@ -69,8 +69,8 @@ Names shared_memory() {
 }
 
 #ifdef MW_ADDRESS_SANITIZER
-/// What has been allocated and not freed. The memory of the process says nothing: what is freed is kept for a
-/// while, so that its use is noticed.
+/// Memory that has been allocated and not freed. The memory of the process does not show this, because freed
+/// memory is kept for some time to detect its use.
 long memory_kib() {
     return static_cast<long>(__sanitizer_get_current_allocated_bytes() / 1024);
 }
@@ -106,7 +106,7 @@ class LifecycleTest : public VirtualMachineTest {
 TEST_F(LifecycleTest, NothingIsLeftBehindByManyLives) {
     const char *const wanted = std::getenv("MILLWRIGHT_LIVES");
     const int lives = wanted != nullptr ? std::atoi(wanted) : 20;
-    constexpr int FIRST = 5;  // libraries that stay are loaded, pools are filled
+    constexpr int FIRST = 5;  // libraries that remain loaded are loaded, pools are filled
     for (int i = 0; i < FIRST; ++i) {
         live(i);
     }

@@ -32,7 +32,7 @@ TEST_F(LostPositionsTest, AfterABoardWasNotFollowedTheMachineIsOffAndNotHomed) {
     const std::string told = messages();
     EXPECT_NE(told.find("home all joints"), std::string::npos) << told;
 
-    // The board answers again. It is not an act of an operator at the machine.
+    // The board answers again, which is not an action of an operator at the machine.
     set_pin(board + "io_error", "FALSE");
     cycles(50);
     ASSERT_TRUE(machine_->hal().signals().set("watchdog-bit", "FALSE").has_value());  // the signal of

@@ -28,10 +28,10 @@ struct SimMachine {
     double velocity = 200, acceleration = 1500;  ///< along the path
     std::string traj;                            ///< further lines of [TRAJ]
     bool hasSpindle = false;
-    double axis_range = 0;  ///< soft limits of the axes on both sides; 0: those of their joints
+    double axis_range = 0;  ///< soft limits of the axes on both sides; 0: the limits of their joints
     std::string hal_lines;  ///< at the end of the HAL file
 
-    /// Writes sim.ini and sim.hal into `folder`; the path of the INI file.
+    /// Writes sim.ini and sim.hal into `folder`; returns the path of the INI file.
     std::string write(const std::filesystem::path &folder) const {
         std::ofstream(folder / "sim.hal") << hal();
         std::ofstream(folder / "sim.tbl") << "T1 P1 D1 Z0\n";

@@ -152,9 +152,9 @@ TEST_F(MachineTest, AToolChangeWaitsForItsPin) {
     EXPECT_EQ(machine_->task().status().tool.in_spindle, 2);
 }
 
-/// A tool arm must not come before the spindle has its angle.
+/// A tool arm must not move before the spindle has its angle.
 TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime) {
-    ASSERT_TRUE(machine_->hal().signals().unlink("spindle.0.is-oriented").has_value());  // a person answers
+    ASSERT_TRUE(machine_->hal().signals().unlink("spindle.0.is-oriented").has_value());  // a person confirms
     const std::string program = "G21 G90\nM19 R90 Q2\nG0 X5\nM19 R180 Q2\nG0 X9\nM2\n";
     start(program);
     for (const double angle : {90.0, 180.0}) {
@@ -181,7 +181,7 @@ TEST_F(MachineTest, OrientingASpindleIsAwaitedUpToItsTime) {
 }
 
 TEST_F(MachineTest, BackBoringMovesAsideOnlyWithAnOrientedSpindle) {
-    ASSERT_TRUE(machine_->hal().signals().unlink("spindle.0.is-oriented").has_value());  // a person answers
+    ASSERT_TRUE(machine_->hal().signals().unlink("spindle.0.is-oriented").has_value());  // a person confirms
     start("G21 G90 G0 X0 Y0 Z5\nS1000 M3\nF3000 G87 X0 Y0 Z-3 R1 I2 J0 K-1\nG80\nM2\n");
     cycles(5000);
     EXPECT_EQ(machine_->task().status().task.waiting.what, task::WaitFor::SPINDLE_ORIENTED);

@@ -35,7 +35,7 @@ constexpr std::string_view CHANNELS =
     "P xemc emcCommand {} localhost W 0 10.0 0 10\nP xemc emcStatus {} localhost R 0 10.0 0 10\n"
     "P xemc emcError {} localhost R 0 10.0 0 10\n";
 
-/// A machine as it is made, in emergency stop.
+/// A new machine, in emergency stop.
 class OneMachine {
   public:
     OneMachine() : loaded_(machine::LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_)) {
@@ -54,7 +54,7 @@ class OneMachine {
     std::unique_ptr<machine::Machine> machine_;
 };
 
-/// A machine whose operator knows NML only.
+/// A machine whose operator uses only NML.
 class NmlMachine {
   public:
     explicit NmlMachine(bool isRemote = false) : client_(*client::Client::join(machine_->mailbox())) {
@@ -84,7 +84,7 @@ class NmlMachine {
         errors_ = std::make_unique<Channel>(Channel::open(mine, ERROR_CHANNEL).value());
     }
 
-    /// `between`: while there is no bridge.
+    /// `between` runs while there is no bridge.
     void restart_bridge(const std::function<void()> &between) {
         bridge_.reset();
         between();
@@ -101,7 +101,7 @@ class NmlMachine {
         EXPECT_TRUE(number.has_value()) << (number.has_value() ? "" : number.error().str());
         return number.value_or(0);
     }
-    /// The bridge has not run for so long.
+    /// The bridge has not run for this time.
     void pause(std::chrono::nanoseconds time) { now_ += time; }
     void cycle() {
         const auto before = bridge_->step(now_);
@@ -109,13 +109,13 @@ class NmlMachine {
         const auto after = bridge_->step(now_);
         EXPECT_TRUE(before.has_value() && after.has_value());
     }
-    /// What the status channel says now.
+    /// The current contents of the status channel.
     StatusMessage<messages::MachineStatus> status() {
         auto message = statuses_->peek();
         EXPECT_TRUE(message.has_value() && message->has_value());
         return {*(*message)->status_head(), *(*message)->get<messages::MachineStatus>()};
     }
-    /// Cycles until the command of that serial number has ended, or `most` cycles.
+    /// Cycles until the command with that serial number has ended, or `most` cycles.
     StatusHead end_of(WriteNumber serial, int most = 60000) {
         StatusHead head;
         for (int i = 0; i < most; ++i) {
@@ -286,10 +286,10 @@ TEST(NmlMachine, CommandsThatWaitedWhileTheirServerDidNotRunAreRejectedButForSto
     expect_done(machine.done(SetState{State::ESTOP_RESET}));
 }
 
-/// Cycles that a command gets; a longer one is then under way on both machines alike.
+/// Cycles for each command; a longer command is then still active on both machines.
 constexpr int CYCLES_EACH = 20;
 
-/// What can be compared of two machines' statuses.
+/// The fields that can be compared in the statuses of two machines.
 std::string comparable(messages::MachineStatus status) {
     return messages::to_json(messages::object(static_cast<const messages::MachineStatus &>(status)));
 }
@@ -366,7 +366,7 @@ TEST(NmlMachine, EveryCommandDoesThroughNmlWhatItDoesThroughTheMailbox) {
         EXPECT_EQ(comparable(status.body), expected[n].status) << name;
         ++count[status.head.state];
     }
-    // Neither side is silent: each kind of end is met.
+    // Neither side is idle: each type of end occurs.
     EXPECT_GE(count[CommandState::DONE], 80)
         << "refused " << count[CommandState::ERROR] << ", going on " << count[CommandState::EXECUTING];
     EXPECT_GE(count[CommandState::ERROR], 70);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What moves motors beside programs and jogs, on a whole machine in virtual time: external offsets by their
-// pins, tables of screw errors from the INI file.
+// Motor motion besides programs and jogs, on a whole machine in virtual time: external offsets by their pins,
+// tables of screw errors from the INI file.
 #include <fmt/format.h>
 
 #include "sim/machine_file.hh"
@@ -98,7 +98,8 @@ TEST_F(OffsetMachine, ASpeedTurnedByAPinWaitsUntilNothingMovesInManualMode) {
     EXPECT_EQ(motion().joint[0].max_velocity, 5);
 }
 
-/// A plasma table of two belts: height control by the offset of Z, and the table's own by those of X and Y.
+/// A plasma table with two belts: height control by the offset of Z, and offsets of the table itself in X and
+/// Y.
 class BeltMachine : public OffsetMachine {
   protected:
     void SetUp() override {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a person has at a machine besides a screen, on a whole machine in virtual time: buttons and lamps
-// (halui), settings as pins (ini.*), and the hand that changes tools (hal_manualtoolchange).
+// Controls of a machine besides a screen, on a whole machine in virtual time: buttons and lamps (halui),
+// settings as pins (ini.*), and the manual tool change (hal_manualtoolchange).
 #include <fmt/format.h>
 
 #include "sim/machine_file.hh"

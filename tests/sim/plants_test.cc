@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The simulated mill of plants (configs/sim/plants.ini): what motion shows is what the plants do, and their
-// faults are seen. The truth is read at pins of the plants that motion does not have.
+// The simulated mill of plants (configs/sim/plants.ini): the values of motion agree with the plants, and
+// their faults are detected. The true values are read at pins of the plants that motion does not use.
 #include <cmath>
 
 #include "sim/virtual_machine.hh"
@@ -18,7 +18,7 @@ class PlantsTest : public VirtualMachineTest {
     }
 };
 
-/// Play of 0.02 between motor and load, counts of 0.001.
+/// Backlash of 0.02 between motor and load, counts of 0.001.
 constexpr double PLAY = 0.011, COUNT = 0.001;
 
 TEST_F(PlantsTest, HomesToTheIndexMarksAndGoesWhereItSays) {
@@ -30,7 +30,7 @@ TEST_F(PlantsTest, HomesToTheIndexMarksAndGoesWhereItSays) {
     EXPECT_NEAR(pin("x-axis.load"), 30, PLAY + COUNT);
     EXPECT_NEAR(pin("y-axis.load"), -20, PLAY + COUNT);
     EXPECT_NEAR(pin("z-axis.load"), -10, PLAY + COUNT);
-    // From the other side: the play is made up.
+    // From the other side: the backlash is compensated.
     ASSERT_EQ(mdi("G1 X25"), task::Progress::DONE) << messages();
     cycles(300);
     EXPECT_NEAR(pin("x-axis.load"), 25, PLAY + COUNT);
@@ -38,7 +38,7 @@ TEST_F(PlantsTest, HomesToTheIndexMarksAndGoesWhereItSays) {
 
 TEST_F(PlantsTest, AProbeFindsTheTable) {
     ASSERT_EQ(mdi("G21 G90 G38.2 Z-65 F300"), task::Progress::DONE) << messages();
-    // 5 mm/s: a servo period and a count on top of the play.
+    // 5 mm/s: the travel in a servo period and a count, in addition to the backlash.
     EXPECT_NEAR(motion().probed_pos[geometry::AXIS_Z], -60.05, 0.005 + COUNT + 2 * PLAY);
     set_pin("probe.stuck-open", "1");
     cycles(5);

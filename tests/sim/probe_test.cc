@@ -82,7 +82,7 @@ TEST_F(ProbeTest, AFileThatCannotBeWrittenIsToldBeforeTheProbe) {
 }
 
 TEST_F(ProbeTest, AFullDiskStopsTheProgram) {
-    // A limit of the process is the same to it as the end of the disk.
+    // The process sees no difference between its limit and the end of the disk.
     rlimit before{};
     ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
     const rlimit none{0, before.rlim_max};

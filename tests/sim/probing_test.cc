@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The programs of nc_files/probing on a complete machine in virtual time. The part is an independent model:
-// solids, and a ball whose distance from them says whether the probe touches; what is found is compared with
-// how the solids were made (I1).
+// solids, and a ball whose distance from them determines contact; the results are compared with the
+// dimensions of the solids (I1).
 #include <algorithm>
 #include <cmath>
 #include <regex>
@@ -15,7 +15,7 @@ struct Point {
     double x, y, z;
 };
 
-/// How far a point is outside of a solid; 0 within. [mm]
+/// Distance of a point outside a solid; 0 inside. [mm]
 using Solid = std::function<double(const Point &)>;
 
 Solid box(Point low, Point high) {
@@ -38,14 +38,14 @@ Solid cylinder(double cx, double cy, double radius, double top) {
     };
 }
 
-/// Slow feed times the servo period, the back lash of numbers, and the printed digits.
+/// Slow feed times the servo period, the rounding of numbers, and the printed digits.
 constexpr double CLOSE_MM = 0.003;
 constexpr double TIP_MM = 4;
 
 class ProbingTest : public VirtualMachineTest {
   protected:
     void SetUp() override { switch_on(); }
-    /// The controlled point is the lowest of the ball; without a ball that of a tool.
+    /// The controlled point is the lowest point of the ball; without a ball, that of the tool.
     task::Progress probe(const std::string &text, const Solid &solid, double tip = TIP_MM) {
         start(text);
         double deepest = 0;

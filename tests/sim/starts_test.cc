@@ -95,8 +95,8 @@ TEST_F(StartsTest, AnAbortInAnyCycleOfAStartLeavesNothingThatMoves) {
     }
 }
 
-/// Left in the middle of lines and arcs, jogged away, come back to: every sample of the cut lies on the
-/// contour.
+/// The program is left in the middle of lines and arcs, the tool is jogged away and returns: every sample of
+/// the cut lies on the contour.
 TEST_F(StartsTest, AProgramThatIsLeftGoesOnAtTheVeryPlace) {
     int left = 0;
     for (int when = 700; when < 9000; when += 611) {
@@ -132,7 +132,8 @@ TEST_F(StartsTest, AProgramThatIsLeftGoesOnAtTheVeryPlace) {
         const auto confirmed = ask(messages::ConfirmApproach{approach().number});
         ASSERT_EQ(progress(confirmed), task::Progress::DONE) << reason(confirmed);
         ASSERT_EQ(finish(), task::Progress::DONE) << messages();
-        // Behind the place, at depth, all lies on the contour; the first such sample is the very place.
+        // After the return, at depth, all samples lie on the contour; the first is exactly at the interrupted
+        // position.
         const auto distance = [](double x, double y) {
             const double line = y < 1e-6 ? 0 : std::fabs(y);
             const double first = std::fabs(std::hypot(x - 20, y - 20) - 20);

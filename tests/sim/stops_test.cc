@@ -223,7 +223,7 @@ TEST_F(StepsTest, AStepWhileAProgramRunsPausesItAtTheEndOfTheMove) {
     EXPECT_DOUBLE_EQ(x(), 8);
     ask(task::StepProgram{});
     cycles(3);
-    ask(task::StepProgram{});  // while a step is under way
+    ask(task::StepProgram{});  // while a step is active
     settle();
     EXPECT_TRUE(status().isPaused);
     EXPECT_DOUBLE_EQ(x(), 10);

@@ -99,7 +99,7 @@ class Switching : public VirtualMachineTest, public ::testing::WithParamInterfac
 TEST_P(Switching, ToEachTypeAndBackWithoutAStep) {
     const std::vector<Kind> &types = GetParam().types;
     EXPECT_TRUE(isType(0));
-    // From each to each other.
+    // From each type to each other type.
     for (const int type : {0, 1, 2, 1, 0, 2, 0, 3}) {
         SCOPED_TRACE(type);
         const Kind kind = type < 3 ? types[static_cast<std::size_t>(type)] : Kind::NONE;

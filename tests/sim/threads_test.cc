@@ -15,23 +15,23 @@ namespace mw::machine {
 namespace {
 
 constexpr double T = 1e-3;
-/// Of the lead.
+/// Fraction of the lead.
 constexpr double TOLERANCE = 1e-3;
-/// The same with a feed per revolution, which follows the speed of the spindle and not its angle: a feed
+/// As above with a feed per revolution, which follows the speed of the spindle and not its angle: a feed
 /// within 0.02 percent, over the 62 turns of a pass.
 constexpr double FEED_TOLERANCE = 1.25e-2;
 constexpr double ACCELERATION = 1200;  ///< of both axes [mm/s^2]
-constexpr double JERK = 24000;         ///< [mm/s^3], where there is one
+constexpr double JERK = 24000;         ///< [mm/s^3], if there is a limit
 
 struct Sample {
     double x = 0, z = 0, turns = 0;
 };
-/// A pass as the machine made it.
+/// A pass as the machine executed it.
 struct Pass {
     std::size_t first = 0, last = 0;  ///< samples
 };
 struct Judged {
-    double run_in = 0, stop = 0;  ///< ways along Z off the helix [mm]
+    double run_in = 0, stop = 0;  ///< deviations from the helix along Z [mm]
     double phase = 0;             ///< of the helix [turns]
     double length = 0;
 };
@@ -50,7 +50,7 @@ class ThreadsTest : public VirtualMachineTest {
         isJerkLimited_ = isJerkLimited;
         switch_on_config(lathe.write(folder_));
     }
-    /// Runs a program and keeps where tool and spindle were at the end of each cycle.
+    /// Runs a program and records the positions of tool and spindle at the end of each cycle.
     void run(const std::string &text) {
         trace_.clear();
         start(text);
@@ -92,7 +92,7 @@ class ThreadsTest : public VirtualMachineTest {
         }
         return out;
     }
-    /// Compares a pass with the helix Z = c - lead * turns that most of it lies on.
+    /// Compares a pass with the helix Z = c - lead * turns on which most of it lies.
     Judged judge(const Pass &pass, double lead, double tolerance = TOLERANCE) const {
         std::vector<double> offsets;
         for (std::size_t i = pass.first; i <= pass.last; ++i) {
@@ -119,7 +119,7 @@ class ThreadsTest : public VirtualMachineTest {
         out.phase = c;
         return out;
     }
-    /// The shortest way that gaining the speed v takes, and two cycles.
+    /// The shortest travel in which the speed v is reached, plus two cycles.
     double shortest_way(double v) const {
         const double jerk_s = isJerkLimited_ ? ACCELERATION / JERK : 0.0;
         return v * v / (2 * ACCELERATION) + 0.5 * v * jerk_s + 2 * v * T;
@@ -138,7 +138,7 @@ struct Units {
 };
 constexpr Units UNITS[] = {{"G21", 1.0}, {"G20", 25.4}};
 
-/// With jerk limits gaining speed leaves a part of the acceleration for following the spindle.
+/// With jerk limits, the acceleration of the start leaves a part for following the spindle.
 double allowed(bool isJerkLimited, double shortest) {
     return isJerkLimited ? 1.25 * shortest : shortest;
 }
@@ -349,14 +349,14 @@ TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut) {
     ASSERT_EQ(passes.size(), 1U);
     const Judged j = judge(passes[0], 1.5);
     EXPECT_NEAR(j.length, 25, 1e-9);
-    // Back on the same helix well before the end: what was before the step is judged as run-in.
+    // Back on the same helix well before the end; the samples before the step are judged as run-in.
     EXPECT_LE(j.run_in, 13);
     EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(15)));
 }
 
 TEST_P(ThreadModes, AThreadThatIsTooFastIsRefusedBeforeItBegins) {
     make(GetParam());
-    // As programmed it would do; the operator has raised the spindle's speed.
+    // At the programmed speed the travel would suffice, but the operator has raised the spindle's speed.
     ask(task::SetSpindleOverride{1.2, 0});
     start("G21 G90 G18 G94 G64\nM3 S1500\nG0 X14 Z5\nG0 X10\nG33 Z-20 K6\nG0 X14\nM2\n");
     EXPECT_EQ(finish(), task::Progress::FAILED);

@@ -10,7 +10,7 @@ namespace {
 constexpr const char *PROGRAM =
     "G21 G90 G64 F3000\nG1 X5\nG43.1 Z2\nG1 X10\nG43.1 Y1 Z4\nX15\nG49\nX30\nM2\n";
 
-/// What the pins show when the machine is between these places of PROGRAM.
+/// The values of the pins while the machine is between these positions of PROGRAM.
 double expected_z(double x) {
     return x <= 5 ? 0 : x <= 10 ? 2 : x <= 15 ? 4 : 0;
 }
@@ -27,7 +27,7 @@ class ToolOffsetTest : public VirtualMachineTest {
         }
         ASSERT_GE(x(), to);
     }
-    /// At a stop all agree: the pins, status, and with it the interpreter.
+    /// At a stop, the pins, the status and the interpreter agree.
     void expect_everywhere(double z) {
         cycles(1500);
         ASSERT_TRUE(motion().isInPosition);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random tool commands, faults, aborts and restarts against a model of both kinds of changers: what the
-// machine shows, its file and the parameters of programs are as the model says after each.
+// Random tool commands, faults, aborts and restarts against a model of both kinds of changers: the displays
+// of the machine, its file and the parameters of programs agree with the model after each.
 #include <unistd.h>
 
 #include <cstdio>
@@ -42,7 +42,7 @@ struct Paper {
         }
         return -1;
     }
-    /// The hand of the changer: `number` goes into the spindle.
+    /// The manual tool change: `number` is put into the spindle.
     void load(int number) {
         if (isRandom) {
             const int pocket = tools[number].pocket;
@@ -67,7 +67,7 @@ struct Paper {
     }
 };
 
-/// What has been tried, so that a campaign that does nothing is seen.
+/// Counts of the tested actions, so that a campaign without actions is detected.
 struct Tried {
     int changes = 0, same = 0, faults = 0, aborts = 0, refused = 0, entries = 0, restarts = 0, named = 0,
         added = 0, removed = 0;
@@ -177,7 +177,7 @@ class ToolJudge : public ::testing::Test {
     }
     bool isLoadable(int number) const { return paper_.has(number) || (number == 0 && !paper_.isRandom); }
 
-    /// One line; the changer works meanwhile, and may fail or be stopped in the cycle that is drawn.
+    /// Executes one line while the changer works, which may fail or be stopped in a random cycle.
     messages::Progress run(const std::string &line, int fault_at = -1, int abort_at = -1) {
         run_ = post(messages::Mdi{line});
         int delay = any(0, 6);
@@ -348,7 +348,7 @@ class ToolJudge : public ::testing::Test {
         compare_file();
         compare_parameters();
     }
-    /// By a separate reader.
+    /// Read by an independent reader.
     void compare_file() {
         std::istringstream lines(read("sim.tbl"));
         std::map<int, Paper::Tool> found;
@@ -410,7 +410,7 @@ class ToolJudge : public ::testing::Test {
     std::string ini_;
     Paper paper_;
     Tried tried_;
-    int left_ = -1;  ///< tool of a change that the hand did not make: it may be prepared still
+    int left_ = -1;  ///< tool of a change that was not made by hand: it may still be prepared
     bool isSwapped_ = false;
 };
 

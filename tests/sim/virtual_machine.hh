@@ -34,7 +34,7 @@ class VirtualMachineTest : public ::testing::Test {
         std::filesystem::remove_all(folder_);
     }
 
-    /// Builds the machine with changed settings; parameters live in memory.
+    /// Builds the machine with changed settings; parameters are kept in memory.
     void switch_on(const std::function<void(task::Settings &)> &change = {}) {
         switch_on_config(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", change);
     }
@@ -57,7 +57,7 @@ class VirtualMachineTest : public ::testing::Test {
         ASSERT_TRUE(person.home_all().has_value());
         machine_->channels().isTracing.store(1);
     }
-    /// A copy of a file of configs/sim with pieces of its text replaced; the path of the copy.
+    /// A copy of a file of configs/sim with parts of its text replaced; returns its path.
     std::string changed_config(const std::string &name,
                                const std::vector<std::pair<std::string, std::string>> &changes) {
         std::ostringstream text;
@@ -110,14 +110,14 @@ class VirtualMachineTest : public ::testing::Test {
             }
         }
     }
-    /// Begins a program.
+    /// Starts a program.
     void start(const std::string &text) {
         write("p.ngc", text);
         ask(task::SetMode{task::Mode::AUTO});
         ask(task::OpenProgram{(folder_ / "p.ngc").string()});
         run_ = post(task::RunProgram{});
     }
-    /// Waits for what start() or mdi() has begun.
+    /// Waits until the work of start() or mdi() is done.
     task::Progress finish(int limit = 200000) {
         for (int i = 0; i < limit && progress(run_) == task::Progress::STARTED; ++i) {
             cycles(1);

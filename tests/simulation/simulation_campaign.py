@@ -25,7 +25,7 @@ CERTAIN_MM, POSSIBLE_MM = 0.2, 0.001
 
 
 def bundle(folder):
-    """The library with its way in for node, as one file."""
+    """The library with its entry point for node, as one file."""
     target = folder / 'bridge.mjs'
     subprocess.run([WEB / 'node_modules/.bin/esbuild', WEB / 'tests/simulation/bridge.ts', '--bundle', '--platform=node', '--format=esm',
                     f'--outfile={target}', '--log-level=warning'], check=True, cwd=WEB)
@@ -33,7 +33,7 @@ def bundle(folder):
 
 
 class Library:
-    """The library in one node process: a job in, its result out."""
+    """The library in one node process: input is a job, output its result."""
 
     def __init__(self, path):
         self.process = subprocess.Popen(['node', path], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
@@ -61,7 +61,7 @@ def canon_of(rs274, text, folder):
 
 
 def differences(verdict, result):
-    """What the library and the judge do not agree on."""
+    """Differences between the library and the judge."""
     texts = []
     error = abs(result['removed_mm3'] - verdict.removed)
     if error > SHARE * max(verdict.removed, LEAST_MM3):
@@ -92,7 +92,7 @@ def run_seed(seed, rs274, library, folder):
 
 
 def self_test(rs274, library, folder):
-    """A library that is wrong must be found out: with a tool that is too large, and with lists of findings that are changed."""
+    """A faulty library must be detected: with a tool that is too large, and with changed lists of findings."""
     failures = 0
     for seed in range(1, 7):
         text, job, _ = stock_programs.make(seed)

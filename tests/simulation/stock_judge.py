@@ -112,7 +112,7 @@ class Stock:
         return float((self.z - self.low[2]).sum()) * self.grid * self.grid
 
     def near(self, place, radius):
-        """The points of all squares that a disc may touch; nothing where it is outside."""
+        """The points of all squares that a disc may touch; none where it is outside."""
         span = []
         for axis, count in ((0, self.columns), (1, self.rows)):
             begin = max(0, math.floor((place[axis] - radius - self.low[axis]) / self.grid))
@@ -123,7 +123,7 @@ class Stock:
         return span[1], span[0]
 
     def contact(self, place, tool, inset):
-        """How far the highest point of the stock inside the tool is above its surface, with the tool smaller by `inset`."""
+        """Depth of the highest point of the stock inside the tool, whose surface is reduced by `inset`."""
         part = self.near(place, tool['diameter_mm'] / 2)
         if part is None:
             return -math.inf
@@ -140,7 +140,7 @@ class Stock:
 
 
 def raised(place, tool):
-    """Where the holder begins."""
+    """Height at which the holder begins."""
     return [place[0], place[1], place[2] + tool['stickout_mm']]
 
 
@@ -150,7 +150,7 @@ def to_box(place, box):
 
 
 class Verdict:
-    """The removed volume, and for each (line, kind) the deepest contact with the tool as it is and with one that is smaller."""
+    """The removed volume, and for each (line, kind) the deepest contact with the tool and with a smaller one."""
 
     def __init__(self):
         self.removed = 0.0
@@ -166,7 +166,7 @@ CERTAIN_INSET, POSSIBLE_INSET = 0.15, 0.0
 
 
 def judge(canon, job, grid=0.1, seed=1):
-    """What a program does, by the canonical calls of rs274 and the setup of `job` (see simulation_campaign.py)."""
+    """The effects of a program, from the canonical calls of rs274 and the setup of `job` (see simulation_campaign.py)."""
     stock, verdict = Stock(job['stock'], grid, seed), Verdict()
     for line, number, isRapid, place, length in moves_of(canon):
         tool = job['tools'].get(str(number))

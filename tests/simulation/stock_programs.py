@@ -10,7 +10,7 @@ TOP_OF_CLAMP = 4.0
 
 
 class Writer:
-    """Lines with N words that are their numbers, so that canonical calls name them."""
+    """Lines whose N words are their numbers, so that canonical calls name them."""
 
     def __init__(self):
         self.lines = []

@@ -34,7 +34,7 @@ static void count_free(const volatile void *) {
 
 #else
 
-// The names under which glibc keeps its own functions for those who replace them.
+// The names of glibc's own functions for programs that replace them.
 void *__libc_malloc(std::size_t size);
 void *__libc_calloc(std::size_t count, std::size_t size);
 void *__libc_realloc(void *memory, std::size_t size);

@@ -7,7 +7,8 @@
 
 namespace mw::testing {
 
-/// Counts this thread's calls of malloc, free and their kin (new and delete among them) while it lives.
+/// Counts this thread's calls of malloc, free and related functions (including new and delete) during its
+/// lifetime.
 ///
 ///     AllocationGuard guard;
 ///     machine.step();

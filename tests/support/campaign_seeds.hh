@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The seeds that a campaign of random programs is asked for by the environment.
+// The seeds of a campaign of random programs, from the environment.
 #pragma once
 
 #include <unistd.h>

@@ -33,7 +33,7 @@ inline std::vector<geometry::Pose> refined(const std::vector<geometry::Pose> &po
     return out;
 }
 
-/// True when both chains can be walked from start to end, never back, at most `tolerance` apart.
+/// True if both chains can be followed from start to end without going back, at most `tolerance` apart.
 inline bool isWithinInOrder(const std::vector<geometry::Pose> &samples,
                             const std::vector<geometry::Pose> &path, double tolerance) {
     std::vector<std::size_t> reach{0};
@@ -44,7 +44,8 @@ inline bool isWithinInOrder(const std::vector<geometry::Pose> &samples,
     for (const geometry::Pose &s : samples) {
         next.clear();
         for (const std::size_t j : reach) {
-            // With this sample the walk on the path stays or goes one on, and on while it is near.
+            // With this sample the position on the path stays or advances by one, and further while it is
+            // near.
             const std::size_t seen = next.empty() ? 0 : next.back() + 1;
             std::size_t k = std::max(j, seen);
             if (k == j && pose_distance(s, path[j]) > tolerance) {

@@ -15,7 +15,7 @@
 
 namespace mw::testing {
 
-/// On every processor a thread that asks to be woken each millisecond, from making it until the question.
+/// On every processor, a thread wakes each millisecond, from construction until the question.
 class LatenessProbe {
   public:
     LatenessProbe() : stolen_before_(stolen_ticks()), waited_before_us_(waited_us()) {
@@ -25,8 +25,8 @@ class LatenessProbe {
         }
     }
 
-    /// No wake-up came late by 10 ms, no program waited as long for a processor, and no host took as much
-    /// away. Ends the watch.
+    /// No wake-up was late by 10 ms, no program waited this long for a processor, and no host took this much
+    /// time. Ends the watch.
     bool isCalm() { return lateness_s() < 0.01; }
 
   private:
@@ -52,7 +52,7 @@ class LatenessProbe {
         }
     }
 
-    /// Of all processors since the start of the machine; proc_stat(5), "steal".
+    /// Time of all processors since the start of the machine; proc_stat(5), "steal".
     static std::int64_t stolen_ticks() {
         std::ifstream stat("/proc/stat");
         std::string name;
@@ -64,8 +64,8 @@ class LatenessProbe {
         return ticks[7];
     }
 
-    /// While some program waited for a processor; the kernel's accounting/psi.rst, "some". 0 when the kernel
-    /// does not count it.
+    /// Time in which some program waited for a processor; the kernel's accounting/psi.rst, "some". 0 if the
+    /// kernel does not count it.
     static std::int64_t waited_us() {
         std::ifstream pressure("/proc/pressure/cpu");
         std::string word;
@@ -83,7 +83,7 @@ class LatenessProbe {
     std::atomic<std::int64_t> worst_ns_{0};
     std::int64_t stolen_before_;
     std::int64_t waited_before_us_;
-    std::vector<std::jthread> threads_;  // last: they use what is above
+    std::vector<std::jthread> threads_;  // last, because they use the members above
 };
 
 }  // namespace mw::testing

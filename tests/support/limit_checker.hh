@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Checks a stream of commanded positions against limits of speed, acceleration and jerk, by differences of
-// the samples. The bound is the limit * (1 + relative) plus what rounding of the positions can make of the
+// the samples. The bound is the limit * (1 + relative) plus the effect of the rounding of positions on the
 // differences.
 #pragma once
 
@@ -59,7 +59,7 @@ class LimitChecker {
 
     bool isWithin() const { return report_.empty(); }
     const std::string &report() const { return report_; }
-    /// Largest |v|, |a| or |j| over its limit seen, as a ratio.
+    /// Largest observed ratio of |v|, |a| or |j| to its limit.
     double worst_velocity() const { return worst_v_; }
     double worst_acceleration() const { return worst_a_; }
     double worst_jerk() const { return worst_j_; }

@@ -35,7 +35,7 @@ struct LinearMachine {
     bool isJerkLimited = false;
     std::function<geometry::Pose(const double *joints)> pose_of;
 
-    std::shared_ptr<kinematics::Matrix> matrix;  ///< the model, where it is one of axes as measured
+    std::shared_ptr<kinematics::Matrix> matrix;  ///< the model, if it measures axes
 };
 
 inline LinearMachine corexy() {

@@ -28,7 +28,8 @@ SEEDS_OF_A_MACHINE = 20
 SESSION_S = 180
 DISK_MB = 64
 LATE = 'the computer was late'
-# A separate mount namespace with a small disk in a file, for full and slow disks. It is gone when the session ends.
+# A separate mount namespace with a small disk in a file, for full and slow disks. It disappears when the
+# session ends.
 DISK = 'mount -o loop "$1/disk.img" "$1/m" && rm "$1/disk.img" && export MW_ATTACK_DEVICE=$(mountpoint -d "$1/m"); export TMPDIR="$1/m"; shift; exec "$@"'
 
 
@@ -49,7 +50,7 @@ class Campaign:
                     log.write(text + '\n')
 
     def session(self, seeds, *more):
-        """Runs seeds at one machine: (answers of seeds, failures at its end)."""
+        """Runs seeds on one machine: (answers of the seeds, failures at the end of the machine)."""
         place = pathlib.Path(tempfile.mkdtemp(prefix='mw_attack_'))
         (place / 'm').mkdir()
         words = [sys.executable, HERE / 'session.py', self.options.prefix / 'bin', ROOT, *more, *map(str, seeds)]
@@ -60,7 +61,9 @@ class Campaign:
         try:
             with tempfile.TemporaryFile('w+') as errors:
                 done = subprocess.run(words, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=errors, text=True, check=False, timeout=SESSION_S,
-                                      start_new_session=True)  # a shell that ends meanwhile sends SIGHUP to stopped processes
+                                      # a shell that ends during the campaign sends SIGHUP to stopped
+                                      # processes
+                                      start_new_session=True)
                 errors.seek(0)
                 complaint, output = errors.read(), done.stdout
         except subprocess.TimeoutExpired as late:
@@ -93,7 +96,7 @@ class Campaign:
                 seeds = seeds[len(answers):]
 
     def judge(self, answer):
-        """A failure while the computer was late is repeated alone, twice at most."""
+        """Repeats a failure alone, at most twice, if the computer was late when it occurred."""
         seed, failures = answer['seed'], answer['failures']
         for _ in range(2):
             if not failures or not all(LATE in text for text in failures):
@@ -132,7 +135,7 @@ class Campaign:
         return 1 if self.counts['failed'] else 0
 
     def self_test(self):
-        """Each judge reports its fault."""
+        """Each judge reports the fault that belongs to it."""
         seed = next(seed for seed in range(1, 10_000) if [name for name, _, _ in plans.make(seed).attacks] == ['web.tokens'])
         self.found = {}
         answers, at_end = self.session([seed], '--self-test')

@@ -45,7 +45,7 @@ def attack(name, **facts):
 
 @dataclasses.dataclass
 class Scene:
-    """What attacks reach: addresses of servers, processes, files."""
+    """The addresses of servers, the processes and the files that attacks can reach."""
     ports: dict              # web, rsh, nml
     processes: dict          # task, realtime, web, rsh, nml: process numbers
     programs: pathlib.Path   # folder of the programs of millwright
@@ -53,7 +53,7 @@ class Scene:
     ini: pathlib.Path
     nc: pathlib.Path         # program folder
     env: dict
-    deadline: float = 0.0    # attacks end by then
+    deadline: float = 0.0    # all attacks end before this time
     cgroup: str = ''
     device: str = ''         # block device of the folder, MAJOR:MINOR
     terminal: object = None
@@ -74,7 +74,7 @@ class Scene:
 
 
 def carry_out(one, scene, rng):
-    """Runs an attack: [begin, end, note]."""
+    """Runs an attack and returns [begin, end, note]."""
     note = ''
     scene.begin, scene.end = time.monotonic(), 0.0
     try:
@@ -106,7 +106,7 @@ class Child:
         os.close(writer)
 
     def result(self, deadline):
-        """[begin, end, note]; ends what is left of the attack."""
+        """Returns [begin, end, note], and ends the processes that the attack has left."""
         isDone = False
         while not isDone and time.monotonic() < deadline:
             isDone = os.waitpid(self.pid, os.WNOHANG)[0] != 0

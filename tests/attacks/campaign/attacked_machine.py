@@ -35,21 +35,21 @@ addf sampler.0 servo-thread
 
 
 def edit(text):
-    """Homes at once; programs have a separate folder."""
+    """The machine homes at once; its programs have a separate folder."""
     text = text.replace('HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\nHALFILE = sampler.hal\n')
     text = text.replace('HOME_SEARCH_VEL = 50', 'HOME_SEARCH_VEL = 0').replace('HOME_LATCH_VEL = 5', 'HOME_LATCH_VEL = 0')
     text = text.replace('SUBROUTINE_PATH = ../../nc_files/lib', 'SUBROUTINE_PATH = ../../nc')
     return re.sub(r'^PROGRAM_PREFIX *=.*$', 'PROGRAM_PREFIX = ../../nc', text, flags=re.MULTILINE)
 
 
-# Below the range from which the kernel takes ports of clients: connecting to one of that range before its server listens may
-# connect the client with itself, and the server then finds its port in use.
+# Below the range from which the kernel takes the ports of clients. A client that connects to a port of that
+# range before the server listens may be connected with itself, and the server then finds its port in use.
 PORTS = range(20000, 32000)
-PORT_LOCKS = []  # until this process ends
+PORT_LOCKS = []  # held until this process ends
 
 
 def free_port():
-    """A port that no other process has, and that no other session of the campaign takes."""
+    """A port that neither another process nor another session of the campaign uses."""
     while True:
         port = secrets.choice(PORTS)
         lock = socket.socket(socket.AF_UNIX)
@@ -65,7 +65,7 @@ def free_port():
 
 
 def processes_of(instance, part):
-    """{number: name} of the processes that have inherited the instance, and MW_ATTACK_PART with this value."""
+    """{number: name} of the processes that have inherited the instance and have this value of MW_ATTACK_PART."""
     found = {}
     words = {f'MILLWRIGHT_INSTANCE={instance}'.encode(), f'MW_ATTACK_PART={part}'.encode()}
     for folder in pathlib.Path('/proc').glob('[0-9]*'):
@@ -78,7 +78,7 @@ def processes_of(instance, part):
 
 
 class Terminal:
-    """The terminal of `millwright start` and the thread that reads it."""
+    """The terminal of `millwright start` and the thread that reads this terminal."""
 
     def __init__(self):
         self.master, self.slave = pty.openpty()
@@ -108,7 +108,7 @@ class Terminal:
 
 
 class Helper:
-    """A process that answers requests of a line by a line of JSON."""
+    """A process that answers each request (one line) with one line of JSON."""
 
     def __init__(self, script, env, *words):
         self.process = subprocess.Popen([sys.executable, HERE / script, *map(str, words)], env=dict(env, MW_ATTACK_PART='observer'), stdin=subprocess.PIPE,
@@ -135,7 +135,7 @@ class Helper:
 
 
 class AttackedMachine(Machine):
-    """`name`: of the instance, with the number of this process."""
+    """`name`: name of the instance, with the number of this process."""
 
     def __init__(self, programs, root, name, device):
         self.device = device
@@ -158,7 +158,7 @@ class AttackedMachine(Machine):
         self.cgroup = f'mw-{self.instance}'
         self.hasGroup = os.access(MEMORY, os.W_OK) and (MEMORY / 'memory.limit_in_bytes').exists() and os.geteuid() == 0
         if self.hasGroup:
-            (MEMORY / self.cgroup).mkdir(exist_ok=True)  # a killed session of this process id left it
+            (MEMORY / self.cgroup).mkdir(exist_ok=True)  # left by a killed session with this process id
             (MEMORY / self.cgroup / 'memory.limit_in_bytes').write_text('-1')
 
     def enter_group(self):
@@ -166,7 +166,7 @@ class AttackedMachine(Machine):
             (MEMORY / self.cgroup / 'cgroup.procs').write_text(str(os.getpid()))
 
     def begin(self):
-        """The machine is on and homed, its servers and observers are ready."""
+        """Returns when the machine is on and homed, and its servers and observers are ready."""
         os.environ.pop('MW_ATTACK_PART', None)
         self.start(stdout=self.terminal.slave, stderr=self.terminal.slave, preexec_fn=self.enter_group)
         for server in SERVERS:
@@ -203,7 +203,7 @@ class AttackedMachine(Machine):
                      device=self.device, terminal=self.terminal)
 
     def end_all(self, isSignalled=True):
-        """SIGTERM for start and the server of screens: how long until each process of the machine has ended, None for never."""
+        """Sends SIGTERM to start and to the server of screens. Returns the time until each process of the machine has ended, None if it has not."""
         self.observer.end()
         self.stopper.end()
         begin = time.monotonic()
@@ -214,7 +214,7 @@ class AttackedMachine(Machine):
         return self.wait_end(begin)
 
     def wait_end(self, begin, parts=None):
-        """Seconds from `begin` until no process (of these numbers) is left."""
+        """Seconds from `begin` until all processes with these numbers have ended."""
         while time.monotonic() - begin < 5:
             # A process loses its environment before it has an exit status. A process of this program has ended when it has a status.
             own = [process.poll() for process in (self.process, *self.servers.values())]
@@ -225,7 +225,7 @@ class AttackedMachine(Machine):
         return None
 
     def kill_all(self):
-        """At the end of a campaign that failed: ends all processes and removes their shared memory."""
+        """At the end of a campaign that failed, ends all processes and removes their shared memory."""
         for part in ('machine', 'observer'):
             for number in processes_of(self.instance, part):
                 try:
@@ -248,7 +248,7 @@ class AttackedMachine(Machine):
 
 
 def temporary_names(instance):
-    """Names with the instance in the folders that all programs share, and in the kernel's list of sockets."""
+    """Names that contain the instance, in the folders that all programs share and in the kernel's list of sockets."""
     found = [str(path) for folder in ('/dev/shm', '/tmp', f'/tmp/millwright-{os.geteuid()}', '/run', f'/run/user/{os.geteuid()}')
              if os.path.isdir(folder) for path in pathlib.Path(folder).iterdir() if instance in path.name]
     sockets = [line.split()[-1] for line in pathlib.Path('/proc/net/unix').read_text().splitlines() if instance in line]
@@ -256,5 +256,5 @@ def temporary_names(instance):
 
 
 def folder_of_machines():
-    """tempfile makes the folders of machines here."""
+    """The folder in which tempfile creates the folders of machines."""
     return tempfile.gettempdir()

@@ -24,7 +24,7 @@ def open_odd(scene, rng):
 
 @attack('files.full_disk', needs=('mount',))
 def full_disk(scene, rng):
-    """Nothing can be written for a while, not even a byte."""
+    """Nothing can be written for a time, not even a byte."""
     blocks = scene.folder / 'filler'
     try:
         with blocks.open('wb', buffering=0) as file:
@@ -43,7 +43,7 @@ def full_disk(scene, rng):
 
 @attack('files.slow_disk', causes=r'interpreter has been busy', needs=('cgroup', 'mount'))
 def slow_disk(scene, rng):
-    """The disk gives and takes so many bytes in a second."""
+    """The disk transfers only this number of bytes per second."""
     group = BLKIO / scene.cgroup
     rate = rng.choice((20_000, 200_000, 2_000_000))
     group.mkdir(exist_ok=True)
@@ -73,7 +73,7 @@ def slow_disk(scene, rng):
 
 @attack('files.removed_folder', causes=r'cut\.ngc|No such file|not found|not saved|cannot')
 def removed_folder(scene, rng):
-    """The folder of the programs, or that of the machine's files, is away for a while."""
+    """The folder of the programs, or the folder of the machine's files, is missing for a time."""
     folder = rng.choice((scene.nc, scene.ini.parent))
     away = folder.with_name(folder.name + '.away')
     folder.rename(away)
@@ -89,7 +89,7 @@ def removed_folder(scene, rng):
 
 @attack('files.replaced_state')
 def replaced_state(scene, rng):
-    """The parameter file or the tool table becomes a pipe, a folder, a link, or goes away."""
+    """The parameter file or the tool table is removed or replaced by a pipe, a folder or a link."""
     path = scene.ini.parent / rng.choice(('mill_mm.var', 'mill_mm.tbl'))
     kept = path.with_name(path.name + '.kept')
     if path.is_symlink() or not path.is_file():
@@ -101,14 +101,14 @@ def replaced_state(scene, rng):
         scene.begins()
         scene.wait(rng.uniform(0.1, 1.5))
     finally:
-        while not path.parent.is_dir():  # files.removed_folder has moved it for a while
+        while not path.parent.is_dir():  # files.removed_folder has moved it for a time
             time.sleep(0.01)
         if path.is_dir():
             path.rmdir()
         if path.is_symlink() or (path.exists() and not path.is_file()):
             path.unlink()
         if path.exists():
-            kept.unlink()  # the machine has written a new one
+            kept.unlink()  # the machine has written a new file
         else:
             kept.rename(path)
         scene.ends()
@@ -131,7 +131,7 @@ def program_changed(scene, rng):
 
 @attack('files.many')
 def many(scene, rng):
-    """A program folder with thousands of files, links in circles and names that are no text."""
+    """A program folder with thousands of files, circular links and names that are not text."""
     made = []
     count = rng.choice((100, 1500))
     try:

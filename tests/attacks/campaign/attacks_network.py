@@ -12,14 +12,14 @@ import struct
 from attack_types import attack
 
 NOBODY = 65534
-OWN_CONNECTIONS = 8       # of 64: a user may take all places of his own machine
+OWN_CONNECTIONS = 8       # of 64: a user may use all connections of his own machine
 FOREIGN_CONNECTIONS = 40
-# What a machine that cuts rejects, and an idle one in AUTO mode, too.
+# Requests that both a machine that is cutting and an idle machine in AUTO mode reject.
 REJECTED = ('Null', 'JogContinuous', 'JogIncrement', 'JogAbsolute', 'LoadCompensation', 'RigidTapMove', 'OpenProgram', 'Mdi')
 
 
 def become_other_user(rng):
-    """Half of the time; what the user may have of connections."""
+    """Becomes another user in half of the cases; returns the number of connections that the user may have."""
     if os.geteuid() != 0 or rng.random() < 0.5:
         return OWN_CONNECTIONS
     os.setgroups([])
@@ -35,7 +35,7 @@ def connect(port):
 
 
 def send(peer, data):
-    """As much as it takes."""
+    """Sends until the peer accepts no more."""
     with contextlib.suppress(OSError):
         peer.sendall(data)
 
@@ -45,7 +45,7 @@ def request(port, target, method='GET', headers='', body=b''):
 
 
 def hang_up(peer, rng):
-    """In order, or as when a cable is pulled."""
+    """Closes the connection in order, or as a pulled cable does."""
     with contextlib.suppress(OSError):
         if rng.random() < 0.5:
             peer.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))
@@ -80,7 +80,7 @@ def web_rubbish(scene, rng):
 
 @attack('web.unread')
 def web_unread(scene, rng):
-    """Large files whose answers are not read."""
+    """Requests large files and does not read the answers."""
     count = become_other_user(rng)
     peers = []
     for _ in range(count):
@@ -92,7 +92,7 @@ def web_unread(scene, rng):
 
 @attack('web.work')
 def web_work(scene, rng):
-    """Paths and times of programs without end, and hanging up."""
+    """Requests the paths and times of endless programs, and disconnects."""
     count = min(4, become_other_user(rng))
     peers = []
     while scene.wait(0.1):
@@ -120,7 +120,7 @@ def frame(text, rng, head=0x81):
 
 @attack('web.sockets')
 def web_sockets(scene, rng):
-    """Web sockets with broken frames, texts that are no requests, and no reading."""
+    """Web sockets with broken frames, texts that are not requests, and clients that do not read."""
     become_other_user(rng)
     peers = []
     for _ in range(3):
@@ -141,7 +141,7 @@ def web_sockets(scene, rng):
 
 
 def commands_of(scene):
-    """Those of REJECTED with their fields."""
+    """Sends the requests of REJECTED with their fields."""
     peer = connect(scene.ports['web'])
     send(peer, request(scene.ports['web'], '/api/schema', headers='Connection: close\r\n'))
     body = b''
@@ -163,7 +163,7 @@ def random_value(rng, field):
 
 @attack('web.commands')
 def web_commands(scene, rng):
-    """Commands that do not fit a machine that cuts."""
+    """Sends commands that a machine rejects while it is cutting."""
     commands = commands_of(scene)
     become_other_user(rng)
     peer = open_socket(scene.ports['web'])
@@ -200,7 +200,7 @@ def web_tokens(scene, rng):
 
 @attack('nml.rubbish')
 def nml_rubbish(scene, rng):
-    """Requests that are cut, too large, or none."""
+    """Requests that are truncated or too large, or that are no requests."""
     peers = []
     while scene.wait(rng.choice((0.0, 0.01))):
         with contextlib.suppress(OSError):
@@ -214,7 +214,7 @@ def nml_rubbish(scene, rng):
 
 @attack('nml.unread')
 def nml_unread(scene, rng):
-    """Status of the machine, asked for without end by clients that never read."""
+    """Clients request the status of the machine endlessly and never read it."""
     peers = [connect(scene.ports['nml']) for _ in range(rng.randrange(1, 12))]
     data = b''.join(struct.pack('>3sBBBHIIQiI', b'MWN', 1, 4, 0, 0, 2, number, 0, 0, 0) for number in range(200))
     while scene.wait(0.02):

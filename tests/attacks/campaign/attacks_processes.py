@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Signals, clients of Python that die, terminals, and pressure on memory, processors and descriptors."""
+"""Signals, Python clients that die, terminals, and shortage of memory, processor time and descriptors."""
 import contextlib
 import os
 import pathlib
@@ -76,7 +76,7 @@ end_attack('kill_motion', signal.SIGKILL, 'realtime', r'millwright-rt|realtime|m
 
 @attack('python.died', causes=None)
 def python_died(scene, rng):
-    """Clients that are killed or suspended in the middle of what they do."""
+    """Clients that are killed or suspended during their work."""
     code = ('import linuxcnc, os, signal, sys, time\nc, s, e = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()\n'
             'many = [linuxcnc.command() for _ in range(int(sys.argv[1]))]\nprint("up", flush=True)\n'
             'while True:\n    c.debug(0); s.poll(); e.poll()\n    [m.debug(0) for m in many]\n')
@@ -99,7 +99,7 @@ def python_died(scene, rng):
 
 @attack('python.commands')
 def python_commands(scene, rng):
-    """Commands that do not fit a machine that cuts, and messages, as fast as they are taken."""
+    """Sends commands that a machine rejects while it is cutting, and messages, as fast as they are accepted."""
     code = ('import linuxcnc, random, sys, time\nrng = random.Random(int(sys.argv[1]))\nc = linuxcnc.command()\nend = time.monotonic() + float(sys.argv[2])\n'
             'odd = "#1=[" + "1+" * 100 + "1]"\n'
             'acts = [lambda: c.mdi("G0 X5"), lambda: c.mdi(odd), lambda: c.mdi("(LOGOPEN,/dev/ptmx)"), lambda: c.jog(linuxcnc.JOG_CONTINUOUS, 1, 0, 5.0),\n'
@@ -139,7 +139,7 @@ def terminal_closed(scene, _rng):
 
 
 def hogs(scene, rng, code, words, group, limits):
-    """Programs in a cgroup with limits, until the time of attacks is over."""
+    """Programs in a cgroup with limits run until the time of attacks is over."""
     folder = GROUPS / group / f'{scene.cgroup}-{os.getpid()}'
     started = []
     folder.mkdir()
@@ -168,7 +168,7 @@ def cpu(scene, rng):
 
 @attack('pressure.memory', kills=('web',), busy=('web',), needs=('cgroup',))
 def memory(scene, rng):
-    """The machine and a program that takes all memory, in a cgroup with 200 MB more than the machine has."""
+    """The machine and a program that allocates all memory share a cgroup with 200 MB more than the machine uses."""
     group = GROUPS / 'memory' / scene.cgroup
     used = int((group / 'memory.usage_in_bytes').read_text())
     code = f'import time\nb = []\nwhile True:\n    b.append(bytearray({rng.choice((1, 8))} << 20)); time.sleep(0.001)'
@@ -189,7 +189,7 @@ def memory(scene, rng):
 
 @attack('pressure.descriptors')
 def descriptors(scene, rng):
-    """The task, or the server of screens, has no descriptor left."""
+    """The task, or the server of screens, has no free descriptor."""
     process = scene.processes[rng.choice(('task', 'web'))]
     used = len(os.listdir(f'/proc/{process}/fd'))
     soft, hard = resource.prlimit(process, resource.RLIMIT_NOFILE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lines in the program that the machine cuts. `run` of these is called before the program is written and returns the lines."""
+"""Lines in the program that the machine cuts. `run` of these attacks is called before the program is written and returns the lines."""
 from attack_types import attack
 
 
@@ -41,11 +41,11 @@ def rubbish(_scene, rng):
 
 @attack('program.messages', causes=r'part x')
 def messages(_scene, rng):
-    """Faster than any client reads them; the axes may wait until the last one."""
+    """Faster than any client can read; the axes may wait until the last message."""
     return f'o9 repeat [{rng.choice((100, 2000))}]\n(MSG, part {"x" * rng.choice((1, 200))})\n(DEBUG, #5420)\no9 endrepeat\n'
 
 
 @attack('program.comments')
 def comments(_scene, rng):
-    """No more than are read within a moment: the axes wait for what follows."""
+    """Few enough to be read within a moment, because the axes wait for the next lines."""
     return ('(' + 'c' * 200 + ')\n') * rng.choice((100, 1000)) if rng.random() < 0.5 else ';' + 'x' * rng.choice((100, 240)) + '\n'

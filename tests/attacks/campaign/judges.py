@@ -4,19 +4,19 @@ import dataclasses
 import math
 import re
 
-ABORT_S = 0.1       # an abort is answered within so long
-STOP_S = 0.6        # a machine that stops does it within so long
-END_S = 2.0         # SIGTERM ends every process within so long
+ABORT_S = 0.1       # maximum time until an abort is answered
+STOP_S = 0.6        # maximum time until a machine has stopped
+END_S = 2.0         # maximum time from SIGTERM until every process has ended
 SUSPENDED_SERVERS = ('signal.stop_web', 'signal.stop_rsh', 'signal.stop_nml')
-SUSPENDED_END_S = 0.5  # a suspended server ends within so long after it continues
+SUSPENDED_END_S = 0.5  # maximum time until a suspended server has ended after it continues
 OFF_PATH_MM = 0.02  # above the tolerance of G64 in the programs, 0.01
-STILL_S = 0.25      # no movement for so long is a stop
+STILL_S = 0.25      # a standstill of this duration is a stop
 SAME_MM = 1e-6
 
 
 @dataclasses.dataclass
 class Event:
-    """An attack as it was carried out; `causes`: what a message says when it stops the machine, None: it must not."""
+    """An attack as it was carried out. `causes`: the text of the message when the attack stops the machine; None: it must not stop it."""
     name: str
     begin: float
     end: float
@@ -32,21 +32,22 @@ class Event:
 class Record:
     """A run. Times are those of the monotonic clock."""
     corners: list                # of the programmed path, closed
-    begin: float                 # the axes move
+    begin: float                 # the axes start to move
     samples: list                # (time, x, y, z, enabled)
     events: list
     python: list                 # (time, text)
     web: list
     abort: dict | None           # of stopper.py
-    lateness: list               # (time, seconds)
+    lateness: list               # (time, lateness in seconds)
     isEnding: bool = False       # an attack ends the machine
-    gone: dict = dataclasses.field(default_factory=dict)    # what clients learn about the end: 'python', 'web', 'terminal'
-    end_s: float | None = None   # how long the end took, where an attack ended it
+    # the reports that clients receive about the end: 'python', 'web', 'terminal'
+    gone: dict = dataclasses.field(default_factory=dict)
+    end_s: float | None = None   # duration of the end, if an attack ended the machine
     isWebUp: bool = True         # False: the server was killed; a new one shows later messages only
 
 
 def distance(point, a, b):
-    """From a segment."""
+    """Distance of a point from a segment."""
     along = [q - p for p, q in zip(a, b)]
     length = sum(c * c for c in along)
     share = 0.0 if length == 0 else max(0.0, min(1.0, sum((x - p) * c for x, p, c in zip(point, a, along)) / length))
@@ -54,7 +55,7 @@ def distance(point, a, b):
 
 
 def off_path(record):
-    """No sampled point off the programmed path."""
+    """No sampled point may be off the programmed path."""
     segments = list(zip(record.corners, record.corners[1:]))
     last = segments[0]
     for when, x, y, z, _ in record.samples:
@@ -89,7 +90,7 @@ def standstills(record):
 
 
 def limit_of(record):
-    """Until when the machine had no order to stop."""
+    """The time until which the machine had no command to stop."""
     return record.abort['sent'] if record.abort else float('inf')
 
 
@@ -110,14 +111,14 @@ def early_stops(record):
 
 
 def latest_of(event, record):
-    """As Event.latest; a realtime process that is stopped at that time reacts when it continues."""
+    """Like Event.latest, but a realtime process that is stopped at that time reacts only when it continues."""
     frozen = [other.end for other in record.events
               if other is not event and other.name == 'signal.stop_motion' and other.begin <= event.latest <= other.end]
     return max([event.latest, *frozen])
 
 
 def stops(record):
-    """The machine cuts on, or stops within STOP_S with a message that names the cause on each screen."""
+    """The machine continues to cut, or stops within STOP_S and every screen shows a message that names the cause."""
     if record.isEnding:
         return ends(record)
     early = early_stops(record)
@@ -133,7 +134,8 @@ def stops(record):
         names = ', '.join(f'{event.name} {event.begin - record.begin:.2f} to {event.end - record.begin:.2f} s' for event in record.events)
         failures.append(f'stop: the axes rest at {rest - record.begin:.2f} s, {"without" if since is None else f"{since:.2f} s after"} an attack that may stop them ({names})')
     causes = [event.causes for event in record.events if event.causes]
-    # From the first message of each attack: one of them stops the axes, those of others may have come before.
+    # Counted from the first message of each attack: one of the attacks stops the axes, and messages of other
+    # attacks may have appeared earlier.
     late = [rest - min(named) for cause in causes if (named := [when for when, text in record.python if re.search(cause, text)])]
     if late and min(late) > STOP_S:
         failures.append(f'stop: the axes rest {min(late):.2f} s after the message')
@@ -142,7 +144,7 @@ def stops(record):
 
 
 def ends(record):
-    """An attack has ended the machine: the axes rest in time, and clients learn of it."""
+    """An attack has ended the machine: the axes stop in time, and clients are informed."""
     event = next(event for event in record.events if event.name.startswith('end.'))
     failures = []
     moving = [b[0] for a, b in zip(record.samples, record.samples[1:]) if math.dist(a[1:4], b[1:4]) >= SAME_MM]
@@ -170,7 +172,7 @@ def lateness_between(record, begin, end):
 
 
 def aborts(record):
-    """An abort is answered in time, and the axes stop."""
+    """An abort must be answered in time, and the axes must stop."""
     abort = record.abort
     if abort is None:
         return []
@@ -191,8 +193,8 @@ def aborts(record):
 
 
 def same_messages(record):
-    """Every error that one screen shows the other one shows, too; those of the last 0.3 s may be on their way, those before the begin
-    belong to the run before."""
+    """Every error that one screen shows must also appear on the other screen. Errors of the last 0.3 s may still be on their way, errors before the begin
+    belong to the previous run."""
     if record.isEnding or not record.isWebUp:
         return []
     last = max([when for when, _ in record.python + record.web], default=0) - 0.3

@@ -61,7 +61,7 @@ class Positions:
             self.batches += [json.loads(line) for line in lines]
 
     def samples(self):
-        """[(time, x, y, z, enabled)]: a record is never younger than its reading, nor than a later record minus the cycles between."""
+        """[(time, x, y, z, enabled)]: the time of a record is at most that of its reading, and at most that of a later record minus the cycles between them."""
         found, latest, following = [], float('inf'), 0
         for read, records in reversed(self.batches):
             for number, x, y, z, enabled in reversed(records):
@@ -73,7 +73,7 @@ class Positions:
 
 
 class WebMessages(threading.Thread):
-    """A screen that reconnects for as long as its server is away."""
+    """A screen that tries to reconnect while its server is not running."""
 
     def __init__(self, port):
         super().__init__(daemon=True)

@@ -10,9 +10,9 @@ import attacks_programs  # noqa: F401  pylint: disable=unused-import
 from attack_types import TABLE
 
 COUNTS = (1,) * 9 + (2,) * 6 + (3,) * 3 + (4,) * 2
-WAIT = 'M66 P0 L0\n'  # what follows is read when the axes are there
+WAIT = 'M66 P0 L0\n'  # the next lines are read when the axes have arrived
 LATEST_ATTACK_S = 0.5
-ATTACKS_END_S = 1.0  # after the axes began to move
+ATTACKS_END_S = 1.0  # after the start of the movement
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Plan:
     offset: float      # written to G59 and to the diameter of T5
 
     def program(self, lines):
-        """`lines`: those of the attacks in the program, behind the first edge."""
+        """`lines`: the lines of the attacks in the program, after the first edge."""
         # The dwell: the spindle is at speed before the axes move.
         text = f'G21 G90 G17 {self.blend} F{self.feed}\nG10 L2 P6 X{self.offset}\nG10 L1 P5 R{self.offset}\nM3 S500\nM8\nG4 P0.3\n'
         moves = ['G1 X%.3f Y%.3f Z%.3f\n' % corner for corner in self.corners]

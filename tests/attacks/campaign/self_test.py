@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Faults that are put into a run on purpose, and what the judges must say of each. A judge that does not is a fault of the campaign."""
+"""Faults that are inserted into a run on purpose, and the expected reports of the judges. A judge that does not report its fault is a fault of the campaign."""
 import copy
 import pathlib
 import signal
@@ -7,7 +7,7 @@ import subprocess
 
 import judges
 
-# {fault: how the sentence of the judge begins}
+# {fault: the beginning of the judge's sentence}
 RECORD_FAULTS = {
     'off_path': 'path: ',
     'stops_late': 'stop: ',
@@ -35,7 +35,7 @@ FAULTS = {**RECORD_FAULTS, **FILE_FAULTS, **END_FAULTS}
 
 
 def of_record(record):
-    """{fault: what the judges say of this record with the fault}"""
+    """{fault: the reports of the judges about this record with the fault}"""
     found = {'sound': judges.of_run(record)}
     for fault in RECORD_FAULTS:
         spoiled = copy.deepcopy(record)
@@ -59,7 +59,7 @@ def of_files(session):
 
 
 def spoil_record(fault, record):
-    """A record as it would be if the machine had the fault."""
+    """The record of a machine with this fault."""
     if fault == 'off_path':
         when, x, y, z, enabled = record.samples[len(record.samples) // 2]
         record.samples[len(record.samples) // 2] = (when, x, y + 0.05, z + 0.05, enabled)
@@ -92,7 +92,7 @@ def spoil_files(fault, machine, parameters):
 
 
 def spoil_end(machine):
-    """Before SIGTERM."""
+    """Called before SIGTERM."""
     machine.servers['nml'].send_signal(signal.SIGSTOP)
     (machine.nc / '.part.ngc.millwright-0123456789').write_text('G0')
     (machine.temporary / 'abc').write_text('')

@@ -22,7 +22,7 @@ import state_files
 from attack_types import TABLE, Child, carry_out
 from attacked_machine import MEMORY, AttackedMachine, temporary_names
 
-AFTER_ATTACKS_S = 0.2  # for messages about the last one
+AFTER_ATTACKS_S = 0.2  # for messages about the last attack
 EXPECTED = re.compile(r'^(configs/.*\.(ini|inc|hal|tbl|var|var\.certificate\.json|bak|journal|tcl|ngc|py|md|png|xml|ui|txt)|configs/.*/[A-Z]*|configs/shop/start|config/.*|nc/(cut|pipe|loop|large|slow|slip)\.ngc|'
                       r'(out|web|rsh|nml)\.txt|m\.nml|[^/]*\.history)$')
 
@@ -63,7 +63,7 @@ class Session:
         return all(has[need] for need in one.needs)
 
     def begin_cut(self, plan, scene):
-        """(path, time at which the axes move or None, why not)."""
+        """(path, time at which the axes start to move or None, reason if they do not)."""
         machine, linuxcnc = self.machine, self.machine.linuxcnc
         lines = ''.join(TABLE[name].run(scene, random.Random(seed)) for name, _, seed in plan.attacks if TABLE[name].isProgram)
         (machine.nc / 'cut.ngc').unlink(missing_ok=True)
@@ -93,7 +93,7 @@ class Session:
         return path, None, f'opened: {opened}; ' + '; '.join(text[:150] for text in machine.messages)
 
     def attack(self, plan, scene, begin):
-        """Carries out the attacks and the abort: the record of the run without what was observed."""
+        """Carries out the attacks and the abort. Returns the record of the run, without the observations."""
         self.wasFolderAway = self.wasFolderAway or any(name == 'files.removed_folder' for name, _, _ in plan.attacks)
         scene.deadline = begin + plans.ATTACKS_END_S
         running = []
@@ -169,7 +169,7 @@ class Session:
         return answer
 
     def wait_end(self, events, scene):
-        """What clients learn when an attack ends the machine, and how long the end takes."""
+        """The reports that clients receive when an attack ends the machine, and the duration of the end."""
         machine = self.machine
         begin = next(event.begin for event in events if event.name.startswith('end.'))
         parts = [scene.processes[name] for name in ('task', 'realtime', 'rsh', 'nml') if scene.processes[name]]
@@ -191,7 +191,7 @@ class Session:
         self.recover(failures)
 
     def check_servers(self, killed, failures):
-        """Those that have ended are started again; an attack must have killed them."""
+        """Restarts the servers that have ended; an attack must have killed them."""
         machine = self.machine
         for server, process in machine.servers.items():
             if process.poll() is None:
@@ -217,7 +217,7 @@ class Session:
         self.diameters = state_files.since(self.diameters, state_files.diameter(self.tools.read_text()))
 
     def recover(self, failures):
-        """As an operator: abort, switch on."""
+        """Aborts and switches the machine on, as an operator does."""
         machine, linuxcnc = self.machine, self.machine.linuxcnc
         machine.command.abort()
         machine.command.wait_complete(2)
@@ -235,7 +235,7 @@ class Session:
             self.isWhole = False
 
     def end(self):
-        """What is wrong at the end of the machine."""
+        """Failures at the end of the machine."""
         machine, failures = self.machine, []
         if self.isSelfTest:
             self.found.update(self_test.of_files(self))
@@ -259,7 +259,7 @@ class Session:
         return failures
 
     def start_again(self):
-        """After a machine that was killed: the next start of this instance works, and leaves nothing."""
+        """After a machine was killed, the next start of this instance works and leaves no files."""
         machine = self.machine
         again = subprocess.Popen([machine.programs / 'millwright', 'start', machine.ini, '--no-display'], env=machine.env, stdin=subprocess.DEVNULL,
                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -287,7 +287,7 @@ class Session:
         left += sorted(set(temporary_names(machine.instance)) - self.before)
         left += [str(path.relative_to(machine.folder)) for path in machine.folder.rglob('*')
                  if not path.is_dir() and not EXPECTED.match(str(path.relative_to(machine.folder)))]
-        if self.wasFolderAway:  # a file that was written meanwhile cannot be removed under its name
+        if self.wasFolderAway:  # a file that was written during this time cannot be removed under its name
             left = [name for name in left if not re.search(r'\.(var|tbl|bak|journal|json)\.\w{6}$', name)]
         left += [str(path) for path in machine.temporary.iterdir()]
         if machine.hasGroup and (MEMORY / machine.cgroup / 'cgroup.procs').read_text().split():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Whether the files of a machine are whole: each has its old or its new content."""
+"""Checks that the files of a machine are complete: each has its old or its new content."""
 import re
 
 VALUE = re.compile(r'^\d+\t-?\d+\.\d+$')
@@ -8,7 +8,7 @@ G59_X = '5321'
 
 
 def of_parameters(path, first, known):
-    """The text has all numbers that it had at the beginning, and G59 has one of the known values."""
+    """The text has all the numbers of the beginning, and G59 has one of the known values."""
     if not path.is_file():
         return [f'file: {path.name} is no file any more']
     text = path.read_text()
@@ -25,7 +25,7 @@ def of_parameters(path, first, known):
 
 
 def of_tools(path, first, known):
-    """All lines are as at the beginning; the diameter of T5 is one of the known values."""
+    """All lines are unchanged; the diameter of T5 is one of the known values."""
     if not path.is_file():
         return [f'file: {path.name} is no file any more']
     text = path.read_text()
@@ -46,7 +46,7 @@ def since(known, seen):
 
 
 def offset_of(path):
-    """G59 X of a parameter file that is whole."""
+    """G59 X of a complete parameter file."""
     return float(dict(line.split('\t') for line in path.read_text().splitlines())[G59_X])
 
 

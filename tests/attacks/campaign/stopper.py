@@ -24,7 +24,7 @@ ANSWER_S = 5
 
 
 class Lateness(threading.Thread):
-    """[(time of waking, by how much it was late)]."""
+    """[(time of waking, lateness)]."""
 
     def __init__(self):
         super().__init__(daemon=True)
@@ -48,14 +48,14 @@ def by_python(_ports):
     sent = time.monotonic()
     command.abort()  # returns when the status shows that task has carried it out
     answered = time.monotonic()
-    answer = command.wait_complete(ANSWER_S)  # until the axes rest
+    answer = command.wait_complete(ANSWER_S)  # until the axes have stopped
     if answer not in (linuxcnc.RCS_DONE, linuxcnc.RCS_ERROR):
         return sent, f'none: {shown_by_python(command)}', answered
     return sent, 'done' if answer == linuxcnc.RCS_DONE else 'error', answered
 
 
 def shown_by_python(command):
-    """What the status says of a command that has no answer."""
+    """The state of a command that has no answer, from the status."""
     stat = linuxcnc.stat()
     stat.poll()
     names = ('echo_serial_number', 'state', 'task_state', 'task_mode', 'interp_state', 'exec_state', 'queue', 'inpos', 'current_line', 'file')

@@ -109,7 +109,7 @@ def single_step():
 
 # Speeds of spindles within the limits of the INI file.
 def speeds(spindle):
-    """What HAL and the status show of a spindle."""
+    """The values of a spindle in HAL and in the status."""
     time.sleep(0.05)
     STAT.poll()
     pins = [hal.get_value(f'spindle.{spindle}.{name}') for name in ('speed-out', 'speed-out-abs', 'forward', 'reverse')]
