@@ -58,7 +58,7 @@ class Program:
         return f'{letter}{self.figure(value)}'
 
     def move(self, code, feed=None, **target):
-        """Modal posts leave out what stays."""
+        """Modal posts omit words that do not change."""
         words = [] if self.is_modal and self.mode == code else [code]
         self.mode = code
         moved = {letter.upper(): self.rounded(value) for letter, value in target.items()}
@@ -72,7 +72,7 @@ class Program:
         self.put(*words)
 
     def arc(self, isClockwise, centre, end, letters, **more):
-        """About `centre` in the plane of two letters; all numbers rounded by themselves."""
+        """About `centre` in the plane of two letters; each number is rounded separately."""
         code = 'G2' if isClockwise else 'G3'
         a, b = letters
         start = (self.position[a], self.position[b])
@@ -82,7 +82,8 @@ class Program:
         names = {'X': 'I', 'Y': 'J', 'Z': 'K'}
         words = [code, self.word(a, end[0]), self.word(b, end[1])]
         words += [self.word(letter, value) for letter, value in more.items()]
-        # Posts do not give the radius of arcs of nearly half a turn and more: its rounding moves the centre.
+        # Posts do not write the radius of arcs of about half a turn or more, because its rounding moves the
+        # centre.
         if self.centres == 'radius' and 0.2 < turned < 2.4:
             words.append(self.word('R', radius))
         elif self.centres == 'absolute':
@@ -122,7 +123,7 @@ class Program:
         return '\n'.join(self.lines) + '\n'
 
     def expected_end(self):
-        """Where the program ends by its words, in mm and degrees."""
+        """The end point of the program by its words, in mm and degrees."""
         scale = 25.4 if self.is_inch else 1.0
         return {letter: value * (1.0 if letter in 'AC' else scale) for letter, value in self.position.items()}
 
@@ -148,7 +149,7 @@ class Program:
             self.put('M5')
 
     def contour(self):
-        """A rectangle with rounded corners, entered by a tangent quarter."""
+        """A rectangle with rounded corners, entered on a tangent quarter circle."""
         x, y, w, h = self.mm(-20, 20), self.mm(-20, 20), self.mm(15, 40), self.mm(15, 40)
         r, depth, lead = self.mm(1, 6), self.mm(-5, -0.5), self.mm(2, 4)
         self.comment('CONTOUR')
@@ -165,7 +166,7 @@ class Program:
         self.move('G0', Z=self.mm(5, 10))
 
     def slot(self):
-        """Lines at an angle and half circles between them."""
+        """Inclined lines with half circles between them."""
         x, y, r, length = self.mm(-20, 20), self.mm(-20, 20), self.mm(2, 8), self.mm(5, 25)
         angle = self.random.uniform(0, 2 * math.pi)
         u, v = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
@@ -214,7 +215,7 @@ class Program:
         self.move('G0', Z=self.mm(8, 12))
 
     def wrapped(self):
-        """Along X while A turns, feed per minute."""
+        """Moves along X while A turns, with feed per minute."""
         self.comment('ROTARY')
         self.move('G0', X=self.mm(-30, 0), Y=0.0, A=0.0)
         self.move('G1', feed=self.mm(100, 300), Z=self.mm(-2, -0.5))
@@ -223,7 +224,7 @@ class Program:
         self.move('G0', Z=self.mm(8, 12))
 
     def swung(self):
-        """Five axes together, short blocks."""
+        """Simultaneous moves of five axes, in short blocks."""
         self.comment('SWARF')
         self.move('G0', X=self.mm(-20, 0), Y=self.mm(-20, 0), A=0.0, C=0.0)
         self.move('G1', feed=self.mm(200, 600), Z=self.mm(-2, 0))
@@ -293,7 +294,7 @@ class Program:
             for _ in range(self.random.randint(1, 5)):
                 angle += self.random.uniform(0.3, 2.8)
                 self.arc(False, (x, y), (x + r * math.cos(angle), y + r * math.sin(angle)), 'XY')
-                # The next arc begins where rounding has put this one's end.
+                # The next arc begins at the rounded end of this arc.
             for _ in range(self.random.randint(0, 30)):
                 self.move('G1', X=self.position['X'] + self.mm(-2, 2), Y=self.position['Y'] + self.mm(-2, 2))
             self.put('M5')

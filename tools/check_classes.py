@@ -13,8 +13,8 @@ import sys
 
 FUNCTION_LIMIT = 40
 DATA_LIMIT = 30
-# Classes over the limits: the functions and data members that each may have, and why. One that has become small enough
-# must not be here.
+# Classes over the limits: the permitted numbers of functions and data members, with the reason. A class that
+# has become small enough must not be in this list.
 OVERLOADS = 'one overload for each alternative of a closed variant'
 PINS = 'the pins of a module, one member each'
 SETTINGS = 'plain values without behaviour, one for each key or field'
@@ -32,7 +32,7 @@ HEAD = re.compile(r'^(?:template\s*<.*>\s*)?(?:class|struct|union)\s+(?:alignas\
 
 
 def code_of(text):
-    """Without comments, texts and preprocessor lines; the lines stay."""
+    """Removes comments, texts and preprocessor lines; the line numbers do not change."""
     text = re.sub(r'/\*.*?\*/', lambda m: '\n' * m.group().count('\n'), text, flags=re.DOTALL)
     text = re.sub(r'"(?:\\.|[^"\\\n])*"', '""', text)
     text = re.sub(r"(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])+'", "' '", text)
@@ -41,7 +41,7 @@ def code_of(text):
 
 
 def matching(code, start):
-    """Place of the brace that closes the one at `start`."""
+    """Position of the brace that closes the brace at `start`."""
     depth = 0
     for i in range(start, len(code)):
         depth += {'{': 1, '}': -1}.get(code[i], 0)
@@ -51,7 +51,7 @@ def matching(code, start):
 
 
 def without_angles(text):
-    """Template arguments taken out: in a declaration '<' after a name opens them."""
+    """Removes template arguments: in a declaration, '<' after a name opens them."""
     before = None
     while before != text:
         before = text
@@ -95,7 +95,7 @@ def count_member(text, counts):
 
 
 def scan(code, begin, end, line_of, found, owner=None, prefix=''):
-    """Walks declarations between two places; `owner` collects what belongs to the class around them."""
+    """Reads the declarations between two positions; `owner` collects the members of the class around them."""
     start = i = begin
     while i < end:
         char = code[i]

@@ -22,7 +22,8 @@ MAY_USE = {
     'components': ('base', 'hal', 'kinematics', 'trajectory', 'motion', 'machine/io'),
     'tests/support': ('base', 'hal', 'kinematics', 'trajectory', 'motion'),
 }
-# The folders of a room in the order in which they may use each other. '' is what lies beside them.
+# The folders of a room in the order in which they may use each other. '' stands for the files outside its
+# folders.
 ORDER = {
     'base': ('', 'diagnostics', 'geometry', 'language', 'options', 'ini', 'charts'),
     'messages': ('declarations', 'legacy', 'mailbox', 'client'),
@@ -41,7 +42,7 @@ ORDER = {
     'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'board', 'virtual', 'hm2_eth', 'pci', 'epp', 'spi'),
     'programs': ('setup', 'run', 'remote', 'publish', 'shop', 'start', 'screen', 'doctor', 'commission', 'mains'),
 }
-# What a folder may not use although its room may.
+# Uses that are forbidden for a folder although its room has them.
 NEVER = {
     'motion/homing': ('hal', 'kinematics', 'trajectory'),
     'motion/interface': ('hal',),
@@ -54,13 +55,13 @@ NEVER = {
     'programs/publish': ('messages/client/client.hh', 'messages/declarations/command.hh', 'machine', 'motion'),
     'clients/shop': ('hal', 'messages'),
     'programs/shop': ('hal', 'messages', 'machine', 'motion'),
-    # Driver and simulated board are written apart, so that one shows the errors of the other.
+    # Driver and simulated board are developed independently, so that each reveals the errors of the other.
     'drivers/mesa/board': ('hal', 'drivers/mesa/hostmot2', 'drivers/mesa/ethernet', 'drivers/mesa/direct', 'drivers/mesa/pci',
                            'drivers/mesa/epp', 'drivers/mesa/spi'),
     'drivers/mesa/hostmot2': ('drivers/mesa/lbp16', 'drivers/mesa/ethernet', 'drivers/mesa/board'),
     'drivers/mesa/ethernet': ('drivers/mesa/board',),
 }
-# What only one folder may use.
+# Files that only one folder may use.
 PRIVATE = {
     'hal/core/detail': 'hal/core',
 }
@@ -77,7 +78,7 @@ def room_of(path):
 
 
 def rank(path, room):
-    """The place of a file in the order of its room's folders; None: the order says nothing of it."""
+    """The position of a file in the order of its room's folders; None if the order does not include it."""
     rest = path[len(room) + 1:].split('/')
     folder = rest[0] if len(rest) > 1 else ''
     order = ORDER[room]
@@ -101,7 +102,7 @@ def are_parts_mixed(source, target):
 
 
 def problem(source, target):
-    """Why the file source may not include target (paths without src/); None: it may."""
+    """The reason why the file source must not include target (paths without src/); None if it may."""
     user, used = room_of(source), room_of(target)
     if user is None or used is None:
         return None

@@ -36,7 +36,7 @@ NOT_OURS = re.compile(r'^(tests/halcompile/corpus/|web/package-lock\.json$|LICEN
 
 
 def anchor_of(heading):
-    """The name of a heading as GitHub and MyST make it."""
+    """The anchor of a heading as GitHub and MyST create it."""
     text = re.sub(r'\[([^\]]*)\]\([^)]*\)', r'\1', heading.replace('`', '')).strip().lower()
     return re.sub(r'[^\w\- ]', '', text).replace(' ', '-')
 

@@ -33,7 +33,7 @@ RULES = (
 
 
 def faults_of(subject):
-    """The rules that a subject breaks."""
+    """The rules that a subject violates."""
     faults = [rule for pattern, rule in RULES if pattern.search(subject)]
     if len(subject) > LONGEST:
         faults.append(f'has at most {LONGEST} characters, not {len(subject)}')
@@ -45,7 +45,7 @@ def faults_of(subject):
 
 
 def report(named_subjects):
-    """Prints the faults of (name, subject) pairs; the number of subjects with faults."""
+    """Prints the faults of (name, subject) pairs; returns the number of subjects with faults."""
     wrong = 0
     for name, subject in named_subjects:
         faults = faults_of(subject)

@@ -28,7 +28,7 @@ def symbols_of(path):
 
 
 def readable(names):
-    """C++ names as people write them."""
+    """C++ names in readable form."""
     out = subprocess.run(['c++filt'], input='\n'.join(names), capture_output=True, text=True, check=True).stdout
     return dict(zip(names, out.splitlines()))
 
@@ -46,7 +46,7 @@ def main():
     defined, wanted = set(), {}
     for name in sys.argv[2:]:
         for member, kind, symbol in symbols_of(pathlib.Path(name)):
-            # Weak undefined symbols (w, v) may stay absent; a caller links them.
+            # Weak undefined symbols (w, v) may remain undefined; a caller links them.
             if kind in 'Uwv' and any(fnmatch.fnmatchcase(symbol, one) for one in of_file.get(member.split(':')[0], ())):
                 continue
             if kind in 'Uwv':

@@ -15,7 +15,7 @@ DEFAULT = re.compile(r'\[[^\[\]]*\]\s*(?:<[^<>]*>\s*)?\(\s*(?:const\s+)?auto\b|\
 
 
 def block_from(text, start):
-    """The text between the brace at `start` and the one that closes it."""
+    """The text between the brace at `start` and its closing brace."""
     depth = 0
     for i in range(start, len(text)):
         depth += {'{': 1, '}': -1}.get(text[i], 0)

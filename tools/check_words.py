@@ -28,7 +28,7 @@ SLACK = 50
 
 
 def prose_of(path, text):
-    """(line number, prose) of each line that has some."""
+    """(line number, prose) of each line with prose."""
     suffix = path.suffix
     is_fenced = False
     has_repeated = path.parent.match(TABLES_OF_MESSAGES)

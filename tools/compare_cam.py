@@ -27,7 +27,7 @@ def moves_of(calls):
 
 
 def difference(folder, number):
-    """What differs in a program, or nothing."""
+    """The difference of a program, or nothing."""
     ref_calls, ref_err, ref_status = compare_interp.read(folder, number, 'ref')
     our_calls, our_err, our_status = compare_interp.read(folder, number, 'our')
     if ref_status or our_status:

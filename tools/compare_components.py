@@ -22,7 +22,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TYPE_LETTERS = {"bit": "b", "float": "f", "s32": "s", "u32": "u"}
 STATISTICS = (".time", ".tmax", ".tmax-increased")
 
-# Loads beside those of the scenarios whose exports are compared.
+# Modules that are loaded besides those of the scenarios, to compare their exports.
 LOADS = """and2 or2 xor2 not flipflop select8 estop_latch charge_pump sum2 mult2 scale offset constant hypot ddt comp near
 mux2 mux4 limit1 limit2 limit3 lowpass ilowpass edge oneshot timedelay encoder counter encoder_ratio pid siggen
 sim_encoder sim_home_switch sim_spindle timedelta latencybins threadtest supply steptest millturn conv_bit_float
@@ -57,7 +57,7 @@ class Side:
         return done.stdout
 
     def exports(self, load):
-        """{name: what it is}; names are those of LinuxCNC where ours has them as second names."""
+        """{name: description}; names are those of LinuxCNC where ours have them as second names."""
         out = self.run(f"loadrt {load}\nshow pin\nshow param\nshow funct\nshow alias\n")
         found, legacy = {}, {}
         for line in out.splitlines():

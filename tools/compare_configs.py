@@ -46,7 +46,7 @@ REASONS = [
 
 
 def merged(ini, depth=0):
-    """The lines of an INI file with those that it includes."""
+    """The lines of an INI file, including the files that it includes."""
     lines = []
     for line in ini.read_text(errors="replace").splitlines():
         include = re.match(r"#INCLUDE\s+(\S+)", line)
@@ -80,7 +80,7 @@ def number(text, otherwise):
 
 
 def program_for(sections):
-    """Moves of a twentieth of each axis's travel, at most 2, around its position after homing."""
+    """Moves by a twentieth of each axis's travel, at most 2, around its position after homing."""
     traj = sections["TRAJ"]
     letters = [c for c in "XYZABCUVW" if c in re.sub(r"[\s,]", "", traj.get("COORDINATES", "XYZ").upper())]
     inch = traj.get("LINEAR_UNITS", "mm").lower() in ("inch", "in", "imperial", "1.0")
@@ -110,9 +110,9 @@ def reason_of(text, status):
 
 
 def run(options, ini, folder, place):
-    """(class, line of the error); class "" when the program ran to its end."""
+    """(class, line of the error); class "" if the program ran to its end."""
     with tempfile.TemporaryDirectory(dir=place) as place:
-        # Links: our programs never write into a file that is there.
+        # Links, because our programs never write into an existing file.
         copy = pathlib.Path(place) / "sample-configs" / "sim"
         shutil.copytree(folder, copy, symlinks=True, copy_function=os.link)
         mine = copy / ini.relative_to(folder)
@@ -200,7 +200,7 @@ until("it does not come back", lambda: max(abs(a - b) for a, b in zip(began, s.p
 
 
 def start(options, ini, folder, place):
-    """(class, line of the error); class "" when it has come up, was switched on and has ended with status 0."""
+    """(class, line of the error); class "" if it has started, was switched on and has ended with status 0."""
     with tempfile.TemporaryDirectory(dir=place) as place:
         copy = pathlib.Path(place) / "configs"
         shutil.copytree(folder, copy, symlinks=True, copy_function=os.link)
@@ -216,7 +216,7 @@ def start(options, ini, folder, place):
         instance = "configs-%d" % os.getpid()
         environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
         environment.update(MILLWRIGHT_HALLIB=options.hallib, HOME=place, MILLWRIGHT_INSTANCE=instance)
-        # Into a file: programs that outlive the launcher would keep a pipe open.
+        # Written to a file, because programs that outlive the launcher would keep a pipe open.
         said = pathlib.Path(place) / "said.txt"
         with open(said, "wb") as out, subprocess.Popen(
                 [options.bin + "/linuxcnc", "-r", str(mine)], cwd=mine.parent, env=environment, stdin=subprocess.DEVNULL,
@@ -245,9 +245,9 @@ def end(process):
 
 
 def kill_left(instance):
-    """Kills what was started for this instance and is still there; command lines."""
+    """Kills the remaining processes of this instance; returns their command lines."""
     mark = ("MILLWRIGHT_INSTANCE=" + instance).encode()
-    for _ in range(20):  # programs that are ending get a second
+    for _ in range(20):  # programs that are ending have a second for it
         left = [folder for folder in pathlib.Path("/proc").iterdir() if folder.name.isdigit() and has(folder, mark)]
         if not left:
             return []

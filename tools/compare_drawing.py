@@ -22,7 +22,7 @@ SIDE = 1000.0
 
 
 def make_context():
-    """An OpenGL context of EGL without a display; the library of OpenGL."""
+    """An OpenGL context of EGL without a display; returns the library of OpenGL."""
     egl = ctypes.CDLL("libEGL.so.1", mode=ctypes.RTLD_GLOBAL)
     gl = ctypes.CDLL("libGL.so.1", mode=ctypes.RTLD_GLOBAL)
     for name in ("eglGetPlatformDisplay", "eglCreateContext", "eglCreatePbufferSurface"):

@@ -28,13 +28,13 @@ from hal_files import HalFile, ROWS
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REFERENCE = '/usr/bin/halrun'
 TIMEOUT_S = 60
-UNBOUNDED = 1e9  # a loop of linked components that has grown so far shows rounding only
+UNBOUNDED = 1e9  # a loop of linked components whose values have become so large shows only rounding
 ISOLATED = ['unshare', '--ipc', '--net', '--pid', '--mount', '--fork', '--kill-child', '--mount-proc', 'bash', '-c']
 DIRECTIONS = ('IN', 'OUT', 'I/O', 'RO', 'RW')
 
 
 class Exports:
-    """What a component exports on LinuxCNC, for each way to load it: {pin: (type, direction)}, functions in full."""
+    """The exports of a component on LinuxCNC, for each way to load it: {pin: (type, direction)}, functions in full."""
 
     def __init__(self, by_load):
         self.by_load = by_load
@@ -56,7 +56,7 @@ class Side:
         folder.chmod(0o777)
 
     def run(self, name, text, inputs=None):
-        """(what it printed, folder of the run)"""
+        """(output, folder of the run)"""
         work = self.folder / name
         shutil.rmtree(work, ignore_errors=True)
         work.mkdir()
@@ -73,7 +73,7 @@ class Side:
         return done.stdout, work
 
     def columns(self, name, hal_file):
-        """[one list of values for each recorded output], or what it printed when rows are missing."""
+        """[one list of values for each recorded output], or the output of the program if rows are missing."""
         log, work = self.run(name, hal_file.text, hal_file.inputs())
         tables = []
         for file in hal_file.outputs():
@@ -91,7 +91,7 @@ def ordinary_user():
 
 
 def discover(reference):
-    """{component: Exports} of those that LinuxCNC has."""
+    """{component: Exports} of the components that LinuxCNC has."""
     found = {name: {} for name in COMPONENTS}
     for number in range(max(len(spec.loads or ['']) for spec in COMPONENTS.values())):
         for name, spec in COMPONENTS.items():
@@ -129,14 +129,14 @@ def is_same(kind, a, b):
 
 
 def is_shifted(theirs, ours, rows, most):
-    """Whether each value that differs is one that the other side has at most `most` periods earlier or later."""
+    """Whether each different value occurs on the other side at most `most` periods earlier or later."""
     def near(values, row):
         return values[max(0, row - most):row + most + 1]
     return all(ours[row] in near(theirs, row) or theirs[row] in near(ours, row) for row in rows)
 
 
 class Comparison:
-    """The outcome of one file."""
+    """The result of one file."""
 
     def __init__(self, hal_file, theirs, ours):
         self.hal_file = hal_file

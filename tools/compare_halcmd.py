@@ -465,7 +465,8 @@ def random_line(rng):
     kind = rng.choice(['bit', 'float', 's32', 'u32'])
     thread = rng.choice(['fast', 'slow', 'slow', 'nothread'])
     return rng.choice([
-        # One pin each: a net line that fails changes nothing here, and leaves its first pins linked there.
+        # One pin each, because a net line that fails changes nothing here but leaves its first pins linked
+        # there.
         f'net {signal} {arrow}{name}', f'net {signal} {arrow}{name}', f'net {signal} {name}', f'net {signal} {name}',
         f'newsig {signal} {kind}', f'delsig {signal}', f'unlinkp {name}', f'linkps {name} {arrow}{signal}',
         f'linksp {signal} {arrow}{name}', f'setp {name} {value}', f'setp {param} {value}', f'sets {signal} {value}',
@@ -477,7 +478,8 @@ def random_line(rng):
     ])
 
 
-# What differs on purpose: (what a line of LinuxCNC or ours matches). Reasons in docs/reference/compatibility.md.
+# Intended differences: (pattern for a line of LinuxCNC or ours). The reasons are in
+# docs/reference/compatibility.md.
 DIFFERENCES = [
     r'used/total shared memory:',
     r'active/recycled ',
@@ -510,7 +512,7 @@ def normalised(text, script):
 
 
 def marked(text):
-    """The commands, each followed by a print of its line number, and which line is which."""
+    """The commands, each followed by a print of its line number, and the assignment of lines."""
     lines, isContinued = [], False
     for number, line in enumerate(text.splitlines(), 1):
         lines.append(line)
@@ -521,7 +523,7 @@ def marked(text):
 
 
 def failures(stderr):
-    """What was said before each mark: line number -> texts; warnings do not count."""
+    """The messages before each mark: line number -> texts; warnings do not count."""
     found, pending = {}, []
     for line in stderr.splitlines():
         m = re.search(r'HALCMD MSG: @(\d+)', line)
@@ -543,7 +545,7 @@ class Side:
                        'MY_PIN': 'and2.0.in0', 'MY_NUMBER': '0', 'MILLWRIGHT_INSTANCE': 'compare'}
         command = [f'{self.path}/halrun', *options]
         if self.user:
-            # A separate name space: LinuxCNC has one shared memory for the machine.
+            # A separate name space, because LinuxCNC has one shared memory for the machine.
             command = ['unshare', '--ipc', '--pid', '--fork', '--mount-proc', '--kill-child', 'runuser', '-u', self.user, '--', 'env', f'HOME={folder}', *command]
         done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
                               text=True, errors='replace', timeout=timeout)

@@ -111,7 +111,7 @@ def run(words, **more):
 
 
 def try_one(binaries, folder, source, is_program):
-    """'', or what went wrong."""
+    """'', or the error."""
     name = source.stem
     words = [str(binaries / 'halcompile'), '--compile', str(source)]
     done = run(words)

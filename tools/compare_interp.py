@@ -37,13 +37,13 @@ while [ $i -lt {last} ]; do
 done
 '''
 
-# Calls that only LinuxCNC 2.9 prints; the newer version, whose outputs the conformance cases hold, does not.
+# Calls that only LinuxCNC 2.9 prints; the newer version, from which the conformance cases come, does not.
 DROPPED = ('START_CHANGE()',)
 CHANGE_TOOL = re.compile(r'CHANGE_TOOL\(\d+\)')
 
 
 def run_all(folder, program, tag, seeds, jobs, user=None):
-    """All programs, in `jobs` loops of the shell beside each other."""
+    """All programs, in `jobs` parallel loops of the shell."""
     words = ['runuser', '-u', user, '--'] if user and os.geteuid() == 0 else []
     loops = []
     for job in range(jobs):
@@ -72,7 +72,7 @@ def error_of(lines):
 
 
 def compare(folder, number, program):
-    """None when equal, else (names of the classes that explain it or None, what to print)."""
+    """None if equal, otherwise (names of the classes that explain it or None, text to print)."""
     ref_calls, ref_err, ref_status = read(folder, number, 'ref')
     our_calls, our_err, our_status = read(folder, number, 'our')
     names = []

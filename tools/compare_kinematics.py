@@ -24,7 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TOOLS = pathlib.Path(__file__).resolve().parent
 TYPES = {1: "bit", 2: "float", 3: "s32", 4: "u32"}
 DIRECTIONS = {16: "in", 32: "out", 48: "in/out", 64: "parameter, read only", 192: "parameter"}
-# Pins of LinuxCNC that ours lack, and why.
+# Pins of LinuxCNC that ours lack, with the reason.
 KNOWN_PINS = {"userk.": "counters of the example of a user's type",
               "userkins.in": "of a template", "userkins.out": "of a template", "userkins.param": "of a template",
               "pentakins.base.5.": "there are five struts", "pentakins.effector.5.": "there are five struts",
@@ -32,7 +32,8 @@ KNOWN_PINS = {"userk.": "counters of the example of a user's type",
 
 MM, TURN, TILT = (-300, 300), (-170, 170), (-80, 80)
 HAND = [TURN] * 6
-# name: how many joints, where joints (or with `poses` poses) are drawn, the machine's size; pins that are set.
+# name: number of joints, range of random joints (or with `poses` poses), size of the machine; pins that are
+# set.
 MODELS = {
     "rotatekins": {"joints": [MM, MM, MM, TURN, TILT, TURN, MM, MM, MM], "size": 300},
     "tripodkins": {"poses": [MM, MM, (5, 600)], "size": 400,
@@ -40,7 +41,7 @@ MODELS = {
     "lineardeltakins": {"poses": [(-200, 200), (-200, 200), MM, TURN, TURN, TURN, MM, MM, MM], "size": 269},
     "rotarydeltakins": {"poses": [(-14, 14), (-14, 14), (-23, -1), TURN, TURN, TURN, MM, MM, MM], "size": 14},
     "5axiskins": {"joints": [MM, MM, MM, TILT, TURN, MM], "size": 300, "pins": {"5axiskins.pivot-length": 180.5}},
-    # Its forward side does not lead back from its own inverse: the inverse is compared.
+    # Its forward kinematics does not return to the pose of its own inverse, so the inverse is compared.
     "maxkins": {"poses": [MM, MM, MM, TURN, TILT, TURN, MM, MM, MM], "size": 300, "is_inverse_only": True,
                 "pins": {"maxkins.pivot-length": 120}},
     "xyzac-trt-kins": {"joints": [MM, MM, MM, TILT, TURN], "size": 300, "offsets": True},
@@ -97,7 +98,7 @@ class Module:
 
 
 def work():
-    """Answers what comes in on the standard input as one JSON text."""
+    """Answers the requests on the standard input as one JSON text."""
     task = json.load(sys.stdin)
     out = os.dup(1)
     os.dup2(2, 1)
@@ -108,10 +109,10 @@ def work():
     if task["switch"]:
         module.module.kinematicsSwitch(task["switch"])
     for call in task["calls"]:
-        if call[0] == "joints":  # forward, back from there
+        if call[0] == "joints":  # forward, and inverse from the result
             is_found, pose = module.forward(call[1], call[2])
             back = module.inverse(pose, call[3]) if is_found else [False, call[1]]
-        else:  # inverse, and back from there
+        else:  # inverse, and forward from the result
             pose = call[1]
             back = module.inverse(pose, call[3])
             is_found = True
@@ -170,7 +171,7 @@ def compare_exports(theirs, ours):
 
 
 def compare_calls(model, theirs, ours, calls):
-    """What differs, and the counts of what was asked."""
+    """The differences, and the counts of the requests."""
     tolerance = model.get("tolerance", 1e-6) * model["size"]
     count = {"same": 0, "rejected by both": 0, "no solution of theirs": 0, "rejected by ours": 0}
     wrong = []
@@ -203,7 +204,7 @@ def compare(name, model, options, task):
     if isinstance(theirs, str):
         print(f"{name}: LinuxCNC's did not run: {theirs}")
         return 1
-    # Beside LinuxCNC's joints; where it has none, beside the drawn ones.
+    # Next to LinuxCNC's joints; if it has none, next to the random ones.
     asked = [[call[0], call[1], call[2], their["back"][1] if their["back"][0] else call[3]]
              for call, their in zip(calls, theirs["calls"])]
     asked = [[*call[:3], [x if x == x else 0.0 for x in call[3]]] for call in asked]

@@ -18,7 +18,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PARTS = r"(motion|joint|axis|spindle|ini)[.-]"
-# (pattern of the whole name, why ours lacks it or has it otherwise)
+# (pattern of the whole name, reason why ours lacks it or differs)
 REASONS = [
     (r"motion\.debug-(bit|float|s32)-\d", "values for those who write the reference's motion"),
 ]

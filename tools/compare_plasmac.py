@@ -25,7 +25,7 @@ TABLE = {
     'arc-ok-high': 200, 'arc-ok-low': 50, 'arc-voltage-scale': 1, 'cut-volts': 100, 'xy-feed-rate': 60000,
     'feed-override': 1, 'cornerlock-threshold': 90, 'program-is-idle': 1, 'scribe-arm-delay': .02,
     'scribe-on-delay': .01, 'torch-pulse-time': .03}
-# What one of a history's settings may be. Delays are those that single and double precision count alike.
+# Values of one of a history's settings. Delays are those that single and double precision count equally.
 CHOICES = {
     'mode': (0, 0, 1, 2), 'resolution': (100, 100, 50, 200), 'pierce-delay': (0, .01, .02),
     'arc-fail-delay': (.02, .03), 'restart-delay': (.01, .02), 'arc-max-starts': (1, 2, 3),
@@ -45,7 +45,7 @@ CHOICES = {
 
 
 def disturbances(draw, begin, length, full_speed):
-    """What may happen within a cut: the voltage, the speed, switches."""
+    """Events within a cut: the voltage, the speed, switches."""
     for _ in range(draw.randint(0, 8)):
         cycle = begin + draw.randint(100, length)
         kind = draw.random()
@@ -64,7 +64,7 @@ def disturbances(draw, begin, length, full_speed):
 
 
 def interruption(draw, begin, length):
-    """A pause with something in it, or a breakaway; the last element is the cycle of the resume."""
+    """A pause with actions in it, or a breakaway; the last element is the cycle of the resume."""
     events = []
     start = begin + draw.randint(5, length - 20)
     resume = start + draw.randint(60, 120)
@@ -87,7 +87,7 @@ def interruption(draw, begin, length):
 
 
 def history(seed):
-    """The script of one history: one to three cuts and what disturbs them."""
+    """The script of one history: one to three cuts and their disturbances."""
     draw = random.Random(seed)
     settings = {**TABLE, **{name: draw.choice(values) for name, values in CHOICES.items()}}
     full_speed = settings['cut-feed-rate'] / 60
@@ -136,7 +136,7 @@ def groups(pins):
 
 
 def peer_outputs(folder, rows, inputs, outputs):
-    """The outputs of each cycle, or None when the stream was late in one."""
+    """The outputs of each cycle, or None if the stream was late in one."""
     cycles = len(rows)
     streams = groups([('cycle', 's32')] + inputs)
     samples = groups([('cycle', 's32')] + outputs)
@@ -187,19 +187,20 @@ def peer_outputs(folder, rows, inputs, outputs):
 def isAllowed(name, ours, peer):
     """Differences that are explained in docs/reference/compatibility.md; `ours` and `peer` are the outputs of one cycle."""
     state = int(peer['state-out'])
-    if name in ('led-up', 'led-down'):  # the peer's stay lit together, and after the cut
+    # the lamps of the other program remain lit together, and after the cut
+    if name in ('led-up', 'led-down'):
         return bool(peer['led-up'] and peer['led-down']) or int(ours['state-out']) not in (11, 12)
-    if name == 'ohmic-enable':  # ours is off as soon as the probing has ended
+    if name == 'ohmic-enable':  # ours is off when the probing has ended
         return state in (0, 13, 14, 15, 16, 17, 21)
-    if name == 'arc-voltage-out':  # the third decimal of a filtered voltage
+    if name == 'arc-voltage-out':  # third decimal of a filtered voltage
         return abs(ours[name] - peer[name]) < 0.0015
-    if name == 'z-offset-counts' and state in (11, 12, 13, 14):  # single precision of the peer
+    if name == 'z-offset-counts' and state in (11, 12, 13, 14):  # single precision of the other program
         return abs(ours[name] - peer[name]) < 60
     return False
 
 
 def compare(seed, program, inputs, outputs):
-    """A line that says `same`, or where each output differs first."""
+    """A line with `same`, or with the first difference of each output."""
     with tempfile.TemporaryDirectory(prefix='plasmac_') as name:
         folder = pathlib.Path(name)
         (folder / 'script').write_text(history(seed))
@@ -214,7 +215,7 @@ def compare(seed, program, inputs, outputs):
             return f'seed {seed}: no run'
     first = {}
     names = [pin for pin, _ in outputs]
-    for cycle in range(1, len(ours)):  # the peer's first cycle only sets up
+    for cycle in range(1, len(ours)):  # the first cycle of the other program only sets up
         a, b = dict(zip(names, ours[cycle])), dict(zip(names, peer[cycle]))
         for pin in names:
             if pin not in first and abs(a[pin] - b[pin]) > 1.5e-6 * max(1, abs(b[pin])) and not isAllowed(pin, a, b):

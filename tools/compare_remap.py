@@ -282,14 +282,14 @@ o<a> sub|M400 P3|o<a> endsub|o<a> call
 M400 P1 M3 S10 G0 X1 (order)
 '''
 
-# Programs at which the two differ, and why.
+# Programs at which the two differ, with the reason.
 MEANT = {
     'M410|G0 X7': 'a remapped F inside execute() breaks the stack of calls of LinuxCNC',
 }
 
 
 def lines_of(output):
-    """What is compared: no counters, no startup, no error texts."""
+    """The compared part: no counters, no startup, no error texts."""
     out = []
     for line in output.splitlines():
         line = re.sub(r'^ *\d+ (N\S+) +', r'\1 ', line)
@@ -321,7 +321,7 @@ def main():
             (folder / 'test.ngc').write_text(program.replace('|', '\n') + '\nM2\n')
             reference, ref_status, ref_error = run(REFERENCE, folder, USER)
             ours, our_status, our_error = run(os.path.abspath(options.ours), folder, None)
-            if ref_status and our_status:  # what a failed program's end prints differs
+            if ref_status and our_status:  # the output at the end of a failed program differs
                 reference = [line for line in reference if 'ON_RESET' not in line]
                 ours = [line for line in ours if 'ON_RESET' not in line]
             count += 1

@@ -20,7 +20,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PORT = 5137
-REASONS = [  # (pattern of the line, why ours answers otherwise)
+REASONS = [  # (pattern of the line, reason why ours answers differently)
     (r'get ini |get wait$|get update$|get set_timeout$', 'there the reference answers with what is left of an earlier answer'),
     (r'help', 'texts of our own'),
     (r'get tool_offset', 'the reference prints the length as a whole number that it is not'),
@@ -115,7 +115,7 @@ set spindle_override 0 70;0.3;get spindle_override 0;get bogus;set verbose off;s
 set enable off;set mode mdi;set enable EMCTOO;set estop on;0.5;get estop;get machine;shutdown"""
 
 
-# What is not answered.
+# Lines without an answer.
 SILENT = {'bogus', 'set verbose off', 'set mist off', 'set enable off', 'set enable EMCTOO', 'set estop on'}
 
 
@@ -143,7 +143,7 @@ def talk(process):
             time.sleep(float(line))
             continue
         answer = b''
-        # Most lines have an answer; where none comes the others are not kept waiting for long.
+        # Most lines have an answer; a missing answer does not delay the other lines for long.
         connection.settimeout(0.5 if line in SILENT else 5)
         try:
             connection.sendall(line.split(' #')[0].encode() + b'\r\n')

@@ -36,7 +36,7 @@ def states_of(prefix, user):
 
 
 def parts(name, ours, theirs):
-    """(name or name[key], ours, theirs) of what differs."""
+    """(name or name[key], ours, theirs) of each difference."""
     if isinstance(ours, list) and isinstance(theirs, list) and len(ours) == len(theirs):
         for i, (x, y) in enumerate(zip(ours, theirs)):
             yield from parts(f'{name}[{i}]', x, y)

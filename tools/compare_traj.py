@@ -29,7 +29,7 @@ LETTERS = "XYZAB"
 REST_SAMPLES = 200  # a standstill of this many cycles separates the approach from the program
 PRINTED = 1e-6  # halsampler prints six decimals
 
-# A machine of `letters` whose motors follow at once; `lines` go in after the motion functions.
+# A machine of `letters` whose motors follow at once; `lines` are added after the motion functions.
 def hal_text(sampler_cfg, letters, lines=""):
     return f"""loadrt [KINS]KINEMATICS
 loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
@@ -45,7 +45,7 @@ net tool-change-loop iocontrol.0.tool-change => iocontrol.0.tool-changed
 
 HAL = hal_text("f" * len(LETTERS), LETTERS, "".join(f"net joint-{i} sampler.0.pin.{i}\n" for i in range(len(LETTERS))))
 
-# LinuxCNC's screen: homes, runs the program, samples beside it.
+# LinuxCNC's screen: homes, runs the program, and samples at the same time.
 DRIVER = """#!/usr/bin/python3
 import subprocess, sys, time
 import linuxcnc
@@ -144,7 +144,7 @@ def prepare(folder, program, geometry, with_jerk):
 
 
 def from_start(rows, geometry):
-    """The rows of the program itself: what follows the last long rest at its start."""
+    """The rows of the program itself: those after the last long rest at its start."""
     start = np.array(geometry["start"], float)
     moving = np.flatnonzero(np.any(np.abs(np.diff(rows, axis=0)) > 0, axis=1))
     if len(moving) == 0:
@@ -176,7 +176,7 @@ def read_ours(path, geometry):
 
 
 def run_reference(folder):
-    """Starts LinuxCNC on compare.ini, as an ordinary user, until its driver ends; returns what it printed."""
+    """Starts LinuxCNC on compare.ini, as an ordinary user, until its driver ends; returns its output."""
     folder.chmod(0o777)
     command = ["linuxcnc", "compare.ini"]
     if os.geteuid() == 0:
@@ -191,7 +191,7 @@ def run_reference(folder):
 
 
 def read_samples(folder, log, columns):
-    """The rows that halsampler wrote; a line that the end of the run has cut is left out."""
+    """The rows that halsampler wrote; a line that the end of the run has truncated is omitted."""
     samples = folder / "samples.txt"
     if not samples.exists() or samples.stat().st_size == 0:
         raise ValueError("no samples: " + log[-800:])

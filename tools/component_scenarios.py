@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What compare_components.py feeds to components: rows of inputs, made from a seed, and which outputs to compare."""
+"""The inputs that compare_components.py feeds to components: rows from a seed, and the outputs to compare."""
 import random
 
 
@@ -31,7 +31,7 @@ def walk(step):
 
 
 def scenario(load, inputs, outputs, *, n=200, setp=None, add=None, prefix=None, seed=1, period=1000000, known=""):
-    """`known`: why ours differs on purpose; such differences are reported but are no failure."""
+    """`known`: the reason why ours differs on purpose; such differences are reported but are not failures."""
     name = load.split()[0]
     prefix = prefix or name.replace("_", "-") + ".0"
     random_source = random.Random(seed)

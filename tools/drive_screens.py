@@ -55,7 +55,7 @@ def until(what, holds, timeout=15.0):
 
 
 class Machine:
-    """A second client beside the screen."""
+    """A second client besides the screen."""
 
     def __init__(self):
         import linuxcnc
@@ -74,7 +74,7 @@ class Machine:
         return s.interp_state == self.lc.INTERP_IDLE and s.inpos and s.queue == 0
 
     def switch_on(self):
-        # Buttons of screens follow what they see, and act when they follow: each state is given time to be seen.
+        # Buttons of screens depend on the state that they have seen, so each state is given time to be seen.
         self.ask("state", self.lc.STATE_ESTOP_RESET)
         time.sleep(1)
         self.ask("state", self.lc.STATE_ON)
@@ -89,7 +89,7 @@ class Machine:
         time.sleep(1)
         s = self.see()
         if not any(s.homed[:joints]) and not any(s.joint[j]["homing"] for j in range(joints)):
-            for joint in range(joints):  # without HOME_SEQUENCE each is homed by itself
+            for joint in range(joints):  # without HOME_SEQUENCE each joint is homed separately
                 self.c.home(joint)
                 until("joint %d is homed" % joint, lambda j=joint: self.see().homed[j], 30)
         until("all joints are homed", lambda: all(self.see().homed[:joints]), 30)
@@ -97,7 +97,7 @@ class Machine:
     def run(self, program):
         self.ask("program_open", program)
         until("the program is open", lambda: self.see().file == program)
-        time.sleep(2)  # screens draw it, and some set their own mode then
+        time.sleep(2)  # screens draw the path, and some then set their own mode
         self.ask("mode", self.lc.MODE_AUTO)
         self.c.auto(self.lc.AUTO_RUN, 0)
         until("the program runs", lambda: self.see().interp_state != self.lc.INTERP_IDLE)
@@ -128,7 +128,7 @@ def keys(*names):
 
 
 def drive_axis(machine, place):
-    """What a person does with the keyboard of AXIS."""
+    """The actions of a person with the keyboard of AXIS."""
     lc, see = machine.lc, machine.see
     program = str(place / "keys.ngc")
     pathlib.Path(program).write_text(PROGRAM)
@@ -174,7 +174,7 @@ def picture(path):
 
 
 def colours(path):
-    """How many colours a picture has: an empty screen has one."""
+    """The number of colours in a picture; an empty screen has one."""
     seen = subprocess.run(["identify", "-format", "%k", str(path)], capture_output=True, text=True, check=True)
     return int(seen.stdout)
 
@@ -192,7 +192,7 @@ def start_display(place):
 def prepare(share, place):
     configs = place / "configs"
     shutil.copytree(share / "doc/linuxcnc/examples/sample-configs", configs, symlinks=True)
-    (place / "linuxcnc/nc_files").mkdir(parents=True)  # touchy wants it
+    (place / "linuxcnc/nc_files").mkdir(parents=True)  # touchy needs this
     os.environ.update(HOME=str(place), LIBGL_ALWAYS_SOFTWARE="1", DBUS_SESSION_BUS_ADDRESS="disabled:",
                       NO_AT_BRIDGE="1", MILLWRIGHT_INSTANCE="screens-%d" % os.getpid())
     return configs
@@ -282,7 +282,8 @@ def main():
         pictures.mkdir(parents=True, exist_ok=True)
         configs = prepare(pathlib.Path(options.share), place)
         for name in options.screens or SCREENS:
-            display, os.environ["DISPLAY"] = start_display(place)  # fresh: no window is left of the one before
+            # fresh: no window of the previous screen is left
+            display, os.environ["DISPLAY"] = start_display(place)
             try:
                 failure = check(name, configs, place, pictures)
             finally:

@@ -25,20 +25,21 @@ ENTRY = re.compile(r'(?:^(?P<before>[^\s-].*)\n)?^(?P<number>\d+/\d+) Testing: (
 VITEST_FAIL = re.compile(r' *FAIL  \S')
 VITEST_END = re.compile(r'⎯{5}')
 VITEST_SOURCE = re.compile(r' *\d+\|( |$)| +\| +\^')
-VITEST_EARLY = re.compile(r' +[×→] ')  # before the summary, which a run that is ended by force does not print
+# printed before the summary, which is missing from a run that is ended by force
+VITEST_EARLY = re.compile(r' +[×→] ')
 GTEST_FAILURE = re.compile(r'\S.*: Failure$')
 GTEST_END = re.compile(r'\[[ A-Z-]{10}\]|$')
 
 
 def shortened(lines, most):
-    """At most so many lines; the last one is kept."""
+    """At most this number of lines; the last one is kept."""
     if len(lines) <= most:
         return lines
     return [*lines[:most - 2], f'({len(lines) - most + 1} lines more)', lines[-1]]
 
 
 def failures_of(lines, begin, end, dropped=None):
-    """The lines from each one that matches `begin` until one that matches `end`."""
+    """The lines from each match of `begin` to a match of `end`."""
     found = []
     failure = None
     for line in [*lines, None]:
@@ -72,7 +73,7 @@ def report(folder):
     tests = {entry['name']: entry.groupdict() for entry in ENTRY.finditer(text)}
     titles = [f'-- {name}, {tests[name]["time"]} s' if name in tests else f'-- {name}' for name in names[:MOST_REASONS]]
     reasons = [reason_of(tests[name]) if name in tests else ['not in LastTest.log'] for name in names[:MOST_REASONS]]
-    # Short reasons leave their lines to long ones.
+    # The lines that short reasons do not use are available to long ones.
     left = MOST_LINES - len(titles) - MOST_NAMES
     shares = {}
     for number, i in enumerate(sorted(range(len(reasons)), key=lambda one: len(reasons[one]))):
@@ -119,7 +120,7 @@ Expected equality of these values:
 
 [  FAILED  ] Jog.Stops (0 ms)
 '''
-# The command of a test, and the lines of its reason; of one that passes: none.
+# The command of a test, and the lines of its reason; none for a test that passes.
 SELF_TESTS = {
     'good': ('true', None),
     'vitest': (f"printf '{VITEST_OUTPUT}'; exit 1",

@@ -14,7 +14,7 @@ import check_layers
 
 STYLE = 'node [shape=box, style=rounded, fontname="Helvetica", fontsize=12]; edge [fontname="Helvetica", fontsize=10];'
 
-# Of a move: function, file below src, what it makes of the move. The function's last word must be in the file.
+# Steps of a move: function, file below src, effect on the move. The function's last word must be in the file.
 MOVE = (
     ('gcode::Interpreter::step', 'gcode/interpreter/interpreter.cc', 'StraightFeed: program units'),
     ('gcode::MachineFrame', 'gcode/canon/machine_frame.hh', 'LineMove: machine units'),
@@ -40,7 +40,7 @@ PROCESSES = (
 
 
 def layers():
-    """Who may use whom; an arrow that follows from others is left out."""
+    """Permitted uses; an arrow that follows from others is omitted."""
     may = {room: {one.split('/')[0] for one in used if '/' not in one} for room, used in check_layers.MAY_USE.items() if room in check_layers.IN_SRC + ('programs', 'drivers')}
     lines = [f'"{room}";' for room in may]
     for room, used in may.items():

@@ -26,12 +26,12 @@ def pick(*choices, change=1.0):
 
 
 def once(*choices):
-    """One of them, for the whole file."""
+    """One of the values, for the whole file."""
     return pick(*choices, change=0)
 
 
 def rare(chance):
-    """A bit that is seldom TRUE."""
+    """A bit that is rarely TRUE."""
     return lambda r, last: int(r.random() < chance)
 
 
@@ -52,7 +52,7 @@ class LateBit:
 
 
 class SlowBit:
-    """A bit that keeps its value for so many periods at least."""
+    """A bit that keeps its value for at least this number of periods."""
 
     def __init__(self, periods):
         self.periods = periods
@@ -80,7 +80,7 @@ def walk_whole(step):
 
 
 def quadrature(r, rows):
-    """The two columns of an encoder that moves at random."""
+    """The two columns of an encoder with random movement."""
     states, at, step, columns = ((0, 0), (1, 0), (1, 1), (0, 1)), 0, r.choice((-1, 0, 1)), ([], [])
     for _ in range(rows):
         step = r.choice((-1, 0, 1)) if r.random() < 0.1 else step
@@ -106,12 +106,12 @@ class Component:
     loads: list = dataclasses.field(default_factory=list)
     values: dict = dataclasses.field(default_factory=dict)  # {regular expression over a pin or parameter: generator}
     skip: str = ''    # inputs and parameters that keep their value
-    hide: str = ''    # outputs that are not compared: they show times of the computer
+    hide: str = ''    # outputs that are not compared, because they show times of the computer
     ordered: bool = False  # functions in the order of their names, backwards
     single: bool = False  # one instance and functions of the module
     count: str = 'count'
     pairs: list = dataclasses.field(default_factory=list)  # inputs that are the two phases of an encoder
-    prefix: str = ''  # where it is not the module's name with a number
+    prefix: str = ''  # if it is not the module's name with a number
 
     def is_skipped(self, pin):
         return bool(self.skip and re.fullmatch(self.skip, pin))
@@ -133,7 +133,7 @@ class Component:
         return ' '.join(each).replace(',personality=', ',') + f' {self.count}={count}'
 
     def function_name(self, name, number, function):
-        """`function` is the name as exported by the first instance."""
+        """`function` is the name that the first instance exports."""
         first = f'{name.replace("_", "-")}.0'
         if not self.single and (function == first or function.startswith(first + '.')):
             return f'{name.replace("_", "-")}.{number}{function[len(first):]}'

@@ -15,10 +15,10 @@ class Difference:
     component: str  # regular expression over the module's name
     pins: str       # regular expression over the outputs, without the prefix
     row: str        # beginning of the row in docs/reference/compatibility.md, without '| '
-    load: str = ''  # regular expression over the load, where the difference depends on it
-    shift: int = 0  # values may come so many periods earlier or later
-    first: int = 0  # in so many periods the pins may differ even then
-    by: int = 0     # values may differ by so much
+    load: str = ''  # regular expression over the load, if the difference depends on it
+    shift: int = 0  # values may come this number of periods earlier or later
+    first: int = 0  # in this number of periods the pins may still differ
+    by: int = 0     # values may differ by this amount
     along: str = ''  # differs only within 2 periods of one in which this pin of the same instance differs
     avoid: dict = dataclasses.field(default_factory=dict, hash=False, compare=False)
 

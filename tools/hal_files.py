@@ -19,7 +19,7 @@ ROWS = 150
 
 @dataclasses.dataclass
 class Instance:
-    """A component of a file, with the values that its inputs and parameters get."""
+    """A component of a file, with the values of its inputs and parameters."""
     name: str
     load: str
     prefix: str
@@ -37,7 +37,7 @@ class Instance:
 
 
 class HalFile:
-    """One generated file: `text`, the rows of its FIFOs, and what each recorded column is."""
+    """One generated file: `text`, the rows of its FIFOs, and the meaning of each recorded column."""
 
     def __init__(self, seed, exports, wanted=None):
         self.seed = seed
@@ -52,7 +52,7 @@ class HalFile:
         self.make_singles([n for n in names if COMPONENTS[n].single and (not wanted or n in wanted)])
         self.text = self.make_text()
 
-    # What is in it.
+    # The contents of the file.
 
     def make_group(self, names, wanted):
         if not names:
@@ -125,7 +125,7 @@ class HalFile:
         return Instance(name, plan['load'], prefix, plan['found'], functions, plan['avoided'])
 
     def choose_links(self, chosen, plans):
-        """{(component, input): (component, output)}: which inputs come from outputs of the group."""
+        """{(component, input): (component, output)}: the inputs that are linked to outputs of the group."""
         links = {}
         for to, plan in enumerate(plans):
             for pin in plan['values']:
@@ -145,7 +145,7 @@ class HalFile:
     def is_uncertain(name, load, pin, avoided):
         return any(d.covers(pin) for d in hal_differences.of_component(name, load) if d not in avoided)
 
-    # How it is connected.
+    # Its connections.
 
     def connect(self, instances, plans, links, tag):
         for at, (instance, plan) in enumerate(zip(instances, plans)):

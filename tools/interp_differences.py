@@ -251,11 +251,11 @@ def isAroundCorner(start, middle, end):
     chord = (x2 - x1)**2 + (y2 - y1)**2
     if abs(across) < 1e-12 or chord < 1e-8:
         return False
-    # The centre is on the normal to the first side in its start, and as far from the end.
+    # The centre lies on the normal to the first side at its start, and at the same distance from the end.
     factor = chord / (2 * across)
     centre = (x1 - dy * factor, y1 + dx * factor)
     radius = math.hypot(x1 - centre[0], y1 - centre[1])
-    # Four decimals are printed: the error of a difference, carried to the centre.
+    # Four decimals are printed; this is the error of a difference, propagated to the centre.
     slack = 3e-4 + radius * 1.5e-4 * (math.hypot(dx, dy) + math.sqrt(chord)) / abs(across)
     far = [math.hypot(x - centre[0], y - centre[1]) for x, y in middle]
     last = (end[0] - middle[-1][0], end[1] - middle[-1][1])
@@ -349,7 +349,8 @@ def thread_passes(pair):
         at = found
 
 
-# Those that compare the lists place by place come last; lathe_pieces may join what rapid_corners looks for.
+# Classes that compare the lists element by element come last; lathe_pieces may join the moves that
+# rapid_corners looks for.
 CLASSES = (speed_override_at_end, order_under_compensation, cycle_with_another_height, rapid_corners, context_announced,
            threading_enables_override, lathe_pieces, way_out_of_finishing, narrow_layers, peck_at_the_bottom, long_numbers,
            small_numbers, angles_of_home, orientation_of_back_boring, tolerance_after_units, rapid_corners, thread_passes)
@@ -376,7 +377,7 @@ STRICTER = {
     'Cannot do g33 with cutter radius compensation on': 'G33 under compensation',
 }
 
-# The same, where the program has what the expression finds.
+# As above, if the program contains a match of the expression.
 STRICTER_WITH = {'Must use g0 or g1 with g53': (r'g5\.1', 'lines after a G5.1')}
 
 

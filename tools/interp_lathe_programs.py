@@ -37,7 +37,7 @@ def lathe_cycle(random, label):
     points = profile_points(random)
     while len(points) < 3 or points[-1][1] <= points[0][1] + 0.1:
         points = profile_points(random)
-    if points[1][1] < points[0][1]:  # ours cuts what falls from the first point in layers there
+    if points[1][1] < points[0][1]:  # ours cuts the falling part after the first point in layers there
         code = code.removesuffix('.2')
     along, across = ('X', 'Z') if is_facing else ('Z', 'X')
     lines = [f'o{label} sub', f'G0 {across}{points[0][1]:.3f} {along}0']
@@ -60,7 +60,7 @@ def lathe_cycle(random, label):
     start = f'{across}{highest + random.uniform(2, 6):.3f} {along}{-sign * random.uniform(0.5, 3):.3f}'
     lines.append(f'G0 {start}')
     cycle = f'{code} Q{label}'
-    # With D LinuxCNC goes by rapid into the material where the profile falls from its first point.
+    # With D, LinuxCNC moves by rapid into the material where the profile falls from its first point.
     is_distance_safe = not has_arcs and points[1][1] >= points[0][1]
     if random.random() < 0.3:
         cycle += f' {start}'

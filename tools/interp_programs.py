@@ -19,7 +19,7 @@ BINARY = ('+', '-', '*', '/', '**', 'mod', 'and', 'or', 'xor', 'eq', 'ne', 'gt',
 
 
 class Program:
-    """One program; `text()` is it. Keeps just enough of the modal state to make most lines good."""
+    """One program; `text()` returns it. Keeps just enough of the modal state to make most lines valid."""
 
     def __init__(self, seed):
         self.random = random.Random(seed)
@@ -32,9 +32,9 @@ class Program:
         self.feed_mode = 'G94'
         self.is_compensated = False
         self.labels = 100
-        self.motion = 'G80'  # what axis words alone mean
+        self.motion = 'G80'  # the meaning of axis words alone
         self.has_break = False
-        self.is_numbered = False  # M61: the tool's data are not the active ones
+        self.is_numbered = False  # M61: the tool's data are not active
         self.spindles = 3 if seed % 2 == 1 else 1
         count = self.random.randint(5, 40)
         self.header()
@@ -369,7 +369,7 @@ class Program:
     def threading(self):
         self.add('S100 M3')
         self.motion = 'G80'
-        if self.chance(0.4):  # K is the depth of a whole number of passes
+        if self.chance(0.4):  # K is the depth of an integer number of passes
             first, passes = self.random.randint(1, 9), self.random.randint(1 if self.chance(0.05) else 2, 8)
             power, depth = self.random.choice(((1, passes), (2, passes), ('1.5', passes**2)))
             self.add(f'G18 G76 P{self.number(0.05, 0.2, 2)} Z{self.number(-3, -1)} I-0.1 J0.0{first} '

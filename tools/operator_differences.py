@@ -24,7 +24,7 @@ def has_failed(act, a, b):
     return act[0] in ('run', 'step', 'stop', 'pause') and a['error_code'] == b['error_code'] == FAILED
 
 
-# (row of the page, fields, when(act, ours, theirs)): why they may differ.
+# (row of the page, fields, when(act, ours, theirs)): the reason for a permitted difference.
 INTENDED = [
     ('spindle that was stopped and is given a speed', SPINDLES,
      lambda act, a, b: all(x['on'] == y['on'] and (x == y or not x['on']) for x, y in zip(a['spindles'], b['spindles']))),
@@ -86,7 +86,7 @@ def errors_of(messages):
 
 
 def fields_of(shown):
-    """Field to value, elements of lists by themselves."""
+    """Field to value, with separate entries for the elements of lists."""
     found = {}
     for name, value in shown.items():
         if not isinstance(value, list) or name == 'position':
@@ -98,7 +98,7 @@ def fields_of(shown):
 
 
 def unexplained(ours, theirs):
-    """(act, field, ours, theirs) without a reason, each once for as long as it lasts."""
+    """(act, field, ours, theirs) without a reason, once for each continuous difference."""
     found, known, seed = [], {}, None
     for a, b in zip(ours, theirs):
         act = a['act']

@@ -97,7 +97,7 @@ def settle(limit=6.0):
 
 
 def messages():
-    """Pairs of kind and text that have come since the last call."""
+    """Pairs of kind and text received since the last call."""
     found = []
     while True:
         message = ERRORS.poll()
@@ -118,7 +118,7 @@ def halui(pin):
 
 
 class Rsh:
-    """linuxcncrsh, started when it is asked for the first time."""
+    """linuxcncrsh, started at the first request."""
 
     def __init__(self):
         self.socket = None
@@ -180,7 +180,7 @@ def open_program(name):
 
 
 def wait_for_line(line):
-    """Until the move of that line is well under way."""
+    """Waits until the move of that line is well under way."""
     end = time.monotonic() + 5
     while time.monotonic() < end:
         poll()
@@ -328,7 +328,8 @@ def reset():
     messages()
 
 
-# Acts after which the systems may differ on purpose (operator_differences.INTENDED) or by time, in what later acts build on.
+# Acts after which the systems may differ on purpose (operator_differences.INTENDED) or by timing, in a state
+# that later acts use.
 UNSURE = ('stop', 'pause', 'abort', 'pause_now', 'resume', 'state')
 
 
@@ -338,7 +339,7 @@ def is_unsure(row, was_idle):
 
 
 def after_stop():
-    """The machine is brought to a place and to modes that both know."""
+    """The machine is brought to a position and to modes that both know."""
     poll()
     if STAT.task_state != linuxcnc.STATE_ON:
         switch_on()

@@ -35,7 +35,7 @@ FIRST_PROGRAM = 7_000_000  # a seed that no other run uses
 
 
 def digest(*parts):
-    """Of bytes; the place of a temporary folder must not be in them."""
+    """Hash of bytes, which must not contain the path of a temporary folder."""
     whole = hashlib.sha256()
     for part in parts:
         whole.update(part + b'\0')
@@ -43,7 +43,7 @@ def digest(*parts):
 
 
 def trace(build, machine, program, is_smooth):
-    """Of one of our programs; the machine is a copy, so that files it writes are fresh for both builds."""
+    """Output of one of our programs; the machine is a copy, so that both builds start without the files that it writes."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         shutil.copytree(ROOT / 'configs', folder / 'configs', ignore=shutil.ignore_patterns('*.var'))

@@ -91,7 +91,7 @@ class Cycle:
     def wait_until_up(self, process):
         end = time.monotonic() + PATIENCE_S
         if self.kind == 'virtual':
-            time.sleep(self.rng.uniform(0, 0.4))  # anywhere in the start or in the run
+            time.sleep(self.rng.uniform(0, 0.4))  # at any time of the start or of the run
             return
         while process.poll() is None and time.monotonic() < end and not (self.ini.parent / 'up').exists():
             time.sleep(0.01)
@@ -118,7 +118,7 @@ class Cycle:
     def run(self):
         self.prepare()
         if self.way == 'full_disk':
-            # The configuration's folder has no room left for parameters, journal and tool table.
+            # The configuration's folder has no space left for parameters, journal and tool table.
             small = self.folder / 'small'
             small.mkdir()
             subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=1m', 'none', str(small)], check=True)
@@ -156,14 +156,14 @@ class Cycle:
         return took, status
 
     def look_for_remains(self):
-        end = time.monotonic() + 10  # a part that has lost the others ends by itself
+        end = time.monotonic() + 10  # a part that has lost the other parts ends by itself
         while True:
             left = remains()
             if not left or time.monotonic() > end:
                 break
             time.sleep(0.05)
         if self.way == 'KILL' and left and not left[0].startswith('process'):
-            # Who was killed could not tidy up: the next one does.
+            # A killed process could not clean up, so the next one does.
             again = Cycle(self.programs, self.kind, 'end', self.rng)
             again.run()
             self.problems += again.problems
@@ -172,7 +172,7 @@ class Cycle:
 
 
 def remains():
-    """What is there that no machine is needed for."""
+    """Remaining objects that need no machine."""
     left = []
     me = os.getpid()
     for path in pathlib.Path('/proc').glob('[0-9]*'):
@@ -185,7 +185,7 @@ def remains():
         except OSError:
             pass
     left += [f'shared memory {path.name}' for path in pathlib.Path('/dev/shm').rglob('*')]
-    # The folder of a user's instances is made once; what is in it belongs to machines.
+    # The folder of a user's instances is created once; its contents belong to machines.
     left += [f'file {path}' for path in pathlib.Path('/tmp').rglob('*') if not (path.is_dir() and path.parent == pathlib.Path('/tmp'))]
     left += [f'socket {line.split()[-1]}' for line in pathlib.Path('/proc/net/unix').read_text().splitlines()[1:] if 'illwright' in line]
     left += [f'System V memory {line}' for line in pathlib.Path('/proc/sysvipc/shm').read_text().splitlines()[1:]]
@@ -193,8 +193,9 @@ def remains():
 
 
 def one(options):
-    """Within the namespaces."""
-    # Where a shell has started this in the background it ignores the interrupt, and so would what it starts until that has a handler.
+    """Runs within the namespaces."""
+    # If a shell has started this program in the background, it ignores the interrupt, and so do its children
+    # until they have a handler.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     pathlib.Path('/var/tmp/cycles').mkdir(exist_ok=True)
     rng = random.Random(options.seed * 1000003 + options.one)

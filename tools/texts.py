@@ -20,7 +20,7 @@ FOLDERS = ('src/base/ini', 'src/base/options', 'src/runtime', 'src/messages/clie
            'src/hal/halcompile', 'src/hal/script', 'src/hal/tools', 'src/kinematics', 'src/gcode/syntax', 'src/gcode/interpreter', 'src/gcode/tools',
            'src/gcode/analysis/commands.cc', 'src/motion', 'src/machine/io', 'src/machine/journal', 'src/machine/commissioning', 'src/machine/task', 'src/machine/config',
            'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/link_section.cc', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'src/clients/shop', 'programs', 'drivers/modbus', 'drivers/mesa/board/hm2_board.cc', 'drivers/mesa/ethernet/cycle_report.cc')
-# Programs that print for other programs: of their texts people read the help.
+# Programs that print for other programs: people read only their help.
 HELP_OF = ('programs/setup/var_command.cc', 'src/base/ini/inivalue.cc')
 HELP = re.compile(r'usage: ')
 # Standard output of HAL commands is for programs (docs/user/languages.md): what these calls of a session take, and tables, files and figures.
@@ -36,7 +36,8 @@ NOT_SHOWN = re.compile(r'/(test|bench|logger|canon)/|keys\.hh$|pin_tables\.hh$|m
                        r'|codes/codes\.cc$|programs/run/summary\.cc$|programs/run/certificate_report\.cc$|programs/run/time_report\.cc$|programs/run/recorder\.cc$|programs/run/plot\.cc$'
                        r'|base/ini/ini(value|var|_strict|_escape|_script)\.cc$|programs/setup/var_command\.cc$|command_classes\.hh$|/kinematics/\w+\.hh$|machine/config/ini_keys\.cc$'
                        r'|/hal/capi/\w+\.cc$|halcompile/emit_(c|main|man)\.cc$|runtime/log\.cc$|reference_pages\.cc$|view/watch_model\.cc$')
-# Clients look for these words (docs/reference/compatibility.md), canon comments are rs274's output, and the compiler reads the others.
+# Clients search for these words (docs/reference/compatibility.md), canon comments are rs274's output, and the
+# compiler reads the rest.
 NEVER = re.compile(r'on limit switch error|^interpreter: |^each command is of one class$|^A machine is already running|^Machine configuration file is'
                    r'|^; life of tools|^# What was answered|^there is no module $|^the planner of a module$|^(exec|port) \{\}$|^millwright \w+ [^a-z]*(\.ini|\.ngc|options|help)|^\{\} \[options\]|^(un)?loadrt |^(addf|setp) \S+ \S+$|^net \S+ \S+ => |^echo |^-- -ini|^10? (in|mm), |^--connectpw and')
 LANGUAGES = ('de', 'es')
@@ -69,7 +70,7 @@ def unescape(match):
 
 
 def end_of_operand(seq, at):
-    """Behind what is added to a text: up to the next + , ; or closing bracket of the same depth."""
+    """The end of an added part of a text: the next + , ; or closing bracket of the same depth."""
     depth = 0
     while at < len(seq):
         token = seq[at][0]
@@ -158,10 +159,10 @@ def texts(root):
     for kind in ('component', 'pin', 'parameter', 'signal', 'function', 'thread', 'alias'):
         for what in (f"there is no {kind} '{{}}'", f"there is {'an' if kind == 'alias' else 'a'} {kind} '{{}}' already", f"{kind} name '{{}}' has {{}} characters, 1 to {{}} are allowed"):
             found[what] = 'src/hal/core/detail/names.cc'
-    # Of one word, or of words that programs read elsewhere.
+    # Texts of one word, or of words that programs read elsewhere.
     for what in ("program '{}' {}", "pin '{}'", 'TRUE, FALSE, 1 or 0', '0 to 5', 'Commands:', 'a {} takes {}'):
         found[what] = 'src/hal/script/commands.cc'
-    # Put together without memory of the heap, since a signal handler does it.
+    # Composed without heap memory, because a signal handler does it.
     for what in ("function '{}' of component '{}' crashed in thread '{}'", "module '{}' crashed while it was loaded", "module '{}' crashed while it was unloaded", 'the planner of a module crashed'):
         found[what] = 'src/hal/core/crash_report.cc'
     for text, name in python_texts(root).items():
@@ -170,7 +171,7 @@ def texts(root):
 
 
 def python_texts(root):
-    """What help of programs in Python has: arguments help and description, USAGE, OPTIONS and ARGPARSE, and docstrings that are shown."""
+    """Help of programs in Python: arguments help and description, USAGE, OPTIONS and ARGPARSE, and docstrings that are shown."""
     found = {}
     for path in sorted([*(root / 'python/programs').iterdir(), *(root / 'python/millwright').glob('*.py')]):
         tree = ast.parse(path.read_text())
@@ -221,7 +222,7 @@ def write_po(path, language, found, entries):
 
 
 def holes_of(text):
-    """How often each number is put in; {} counts up."""
+    """The number of uses of each field; {} counts up."""
     found, count = [], 0
     for hole in re.findall(r'\{(\d*)\}', text):
         found.append(int(hole) if hole else count)
@@ -230,7 +231,7 @@ def holes_of(text):
 
 
 def damaged(key, text):
-    """What is wrong with a translation, or None."""
+    """The fault of a translation, or None."""
     if not text:
         return 'has no translation'
     asked = key.count('{}')

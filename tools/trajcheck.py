@@ -20,8 +20,8 @@ import sys
 import numpy as np
 
 LINEAR, ANGULAR = [0, 1, 2, 6, 7, 8], [3, 4, 5]
-EXACT_TOLERANCE = 1e-6  # what "exact path" means [mm, degrees]
-CHORD_ERROR_SHARE = 0.002  # arcs become chords this share of the tolerance off them
+EXACT_TOLERANCE = 1e-6  # tolerance for "exact path" [mm, degrees]
+CHORD_ERROR_SHARE = 0.002  # the deviation of chords from arcs, as a fraction of the tolerance
 RELATIVE = 1e-6
 
 
@@ -102,7 +102,7 @@ class Chain:
         self.count = len(points)
 
     def near(self, segment, groups_of_point, reach_squared):
-        """The part [low, high] of a segment that is within reach of a point, or None."""
+        """The part [low, high] of a segment within reach of a point, or None."""
         low, high = 0.0, 1.0
         for (at, step, square), point in zip(self.groups, groups_of_point):
             across, along = 0.0, 0.0
@@ -128,7 +128,7 @@ class Chain:
 
 
 def is_within(driven, path, reach):
-    """Whether the two chains can be walked in order, at most `reach` apart: the free space of Alt and Godau."""
+    """Whether the two chains can be followed in order, at most `reach` apart: the free space of Alt and Godau."""
     square = reach * reach
     def apart(i, j):
         return max(sum((a - b) ** 2 for a, b in zip(p, q)) for p, q in zip(driven.point(i), path.point(j)))
@@ -191,7 +191,7 @@ def deviation(samples, points, highest, resolution):
 
 
 def worst_over_limits(rows, period, geometry, rounding, with_jerk):
-    """{kind: (largest ratio, coordinate, sample)}; `rounding`: of a printed position, else that of the double."""
+    """{kind: (largest ratio, coordinate, sample)}; `rounding`: of a printed position, otherwise of the double."""
     largest = np.maximum.accumulate(np.abs(rows), axis=0) if rounding == 0.0 else None
     unit = np.spacing(largest) if rounding == 0.0 else np.full(rows.shape, rounding)
     out, difference = {}, rows
@@ -217,7 +217,7 @@ def cycle_time_s(rows, period):
 def judge(geometry, period, rows, rounding=0.0, with_jerk=False):
     """All figures of one trace, as a dictionary; "ok" if no limit is exceeded."""
     tolerance = max(float(geometry["tolerance"]), EXACT_TOLERANCE)
-    # Between samples the path bends by at most a T^2/8 from the chord; that is not a deviation.
+    # Between samples the path deviates by at most a T^2/8 from the chord; this does not count as a deviation.
     bend = math.sqrt(3) * max(geometry["max_acceleration"][:3]) * period ** 2 / 8 + rounding
     points = programmed_path(geometry, max(tolerance, 1e-4) * CHORD_ERROR_SHARE)
     slack = max(tolerance, 1e-4) * CHORD_ERROR_SHARE + bend

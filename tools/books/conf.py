@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Settings of Sphinx for the books. script/docs calls it with the pages that stage.py has put together."""
+"""Settings of Sphinx for the books. script/docs calls it with the pages that stage.py has collected."""
 import os
 
 import pygments.lexers.special
@@ -15,7 +15,7 @@ language = 'en'
 smartquotes = False
 # Links to headings: page.md#heading.
 myst_heading_anchors = 4
-# No highlighting where a page names no language.
+# No highlighting if a page names no language.
 highlight_language = 'text'
 
 html_theme = 'basic' if os.environ.get('MW_BOOKS_FOR') == 'pdf' else 'sphinx_rtd_theme'

@@ -39,26 +39,26 @@ AREAS = (
     ('Drives and servers of remote clients', 'servers', ('programs/mains', 'programs/remote', 'programs/publish', 'programs/shop', 'src/clients/publish', 'src/clients/shop')),
 )
 HOLE = '…'
-# Clients look for its words, so it is in no catalogue (texts.NEVER).
+# Clients search for its words, so it is in no catalogue (texts.NEVER).
 NOT_TRANSLATED = {'joint {} on limit switch error': 'src/motion/interface/texts.cc'}
 MESSAGE_TABLE = ('message', 'cause', 'remedy')
 PART_TABLE = ('text', 'part of')
-# In PAGE alone: the rows of the other files may change their order.
+# Only in PAGE: the rows of the other files may change their order.
 AS_ABOVE = 'as above'
 
 
 def shown(text):
-    """A key of the catalogue as people see it, with the mark for each value; as a cell of a table."""
+    """A key of the catalogue as people see it, with a mark for each value; as a cell of a table."""
     return re.sub(r'([|<>*_\[\]`\\])', r'\\\1', plain(text))
 
 
 def plain(text):
-    """A key of the catalogue in one line, with the mark for each value."""
+    """A key of the catalogue in one line, with a mark for each value."""
     return re.sub(r'(\{\})+', HOLE, text.replace('\n', ' ')).strip()
 
 
 class Row:
-    """A row of a table: where it is, the text of its first cell, and the other cells."""
+    """A row of a table: its position, the text of its first cell, and the other cells."""
 
     def __init__(self, file, number, text, cells):
         self.file, self.number, self.text, self.cells = file, number, text, cells
@@ -127,7 +127,7 @@ def missing(root):
 
 
 def check(root):
-    """Messages without a row, rows whose text no source has, each with the nearest text, rows of the same text, and rows with an empty cell."""
+    """Messages without a row, rows whose text no source has, each with the nearest text, rows with the same text, and rows with an empty cell."""
     known = {plain(key) for key in NOT_TRANSLATED | texts.texts(root)}
     seen, problems = {}, []
     for row in all_rows(root):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The theme starts navigation and search by scripts within the page. The server of the operator's screen allows no such scripts, so
-// this file does the same.
+// The theme starts navigation and search by scripts within the page. The server of the operator's screen
+// allows no such scripts, so this file replaces them.
 document.addEventListener('DOMContentLoaded', () => {
   if (typeof SphinxRtdTheme !== 'undefined') {
     SphinxRtdTheme.Navigation.enable(true);
