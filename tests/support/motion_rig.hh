@@ -154,7 +154,7 @@ struct MotionRig {
         const motion::Answer *a = answer_to(id);
         return a != nullptr && a->kind == motion::AnswerKind::DONE;
     }
-    /// The reason of a rejection; NONE when done, stale or not answered.
+    /// The reason of a rejection; NONE when done, outdated or not answered.
     motion::Reason refusal(motion::CommandId id) const {
         const motion::Answer *a = answer_to(id);
         return a != nullptr && a->kind == motion::AnswerKind::REFUSED ? a->reason : motion::Reason::NONE;

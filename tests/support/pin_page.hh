@@ -29,7 +29,7 @@ inline std::string replaced(std::string text, const std::string &from, const std
     return text;
 }
 
-/// Rows of all tables that `for_each` shows.
+/// Rows of all tables that `for_each` passes.
 template <class ForEach>
 std::vector<PinText> pin_texts(const ForEach &for_each) {
     std::vector<PinText> out;
@@ -63,7 +63,7 @@ inline std::string page_line(const PinText &row) {
     return line + (row.unit.empty() ? "" : " \\[" + row.unit + "]") + "++";
 }
 
-/// The lines about pins below "# PINS" of a manual page.
+/// The lines about pins after "# PINS" of a manual page.
 inline std::vector<std::string> page_pins(const std::string &path) {
     std::ifstream page(path);
     std::vector<std::string> lines;

@@ -9,7 +9,7 @@ std::optional<World> carried_out(const std::vector<Line> &lines, World world, bo
                                  std::size_t from) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const bool isMove = lines[i].kind == Kind::RAPID || lines[i].kind == Kind::FEED;
-        const bool isMade = !isMove || i + 1 >= from;  // what is only calculated meets no limit
+        const bool isMade = !isMove || i + 1 >= from;  // a calculated path has no limits
         if (!apply(lines[i], world, isBlockDelete) && isMade) {
             return std::nullopt;
         }

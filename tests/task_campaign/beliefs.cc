@@ -86,7 +86,7 @@ std::string state_trouble(const messages::MachineStatus &status, messages::Mode 
                : fmt::format("the feed override is {}, not {}", overrides.feed, beliefs.feed_override);
 }
 
-/// Of pins, which no message passes.
+/// State of pins, which no message changes.
 std::string output_trouble(const Bench &bench, messages::State state) {
     const Bench::Pins &pins = bench.pins();
     const messages::MachineStatus &status = bench.status();
@@ -124,7 +124,7 @@ Modes seen_in_file(const Bench &bench) {
     return seen;
 }
 
-/// `why`: the first thing that does not fit.
+/// `why`: the first mismatch.
 bool fits(const World &world, const Bench &bench, bool isHomed, std::string &why) {
     const messages::MachineStatus &status = bench.status();
     const Bench::Pins &pins = bench.pins();

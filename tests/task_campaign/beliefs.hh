@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the machine may be in by the facts, and whether it is: as seen by clients, at pins and on the disk.
+// The possible states of the machine by the facts, and the check that it is in one of them, as seen by
+// clients, at pins and on the disk.
 #pragma once
 
 #include <string>
@@ -11,21 +12,21 @@
 namespace mw::task_campaign {
 
 struct Beliefs {
-    std::vector<World> worlds;  ///< one of them is true
+    std::vector<World> worlds;  ///< one of these states is true
     messages::State state = messages::State::ESTOP;
     bool isOptionalStop = true, isBlockDelete = true, isHomed = false;
     double feed_override = 1;
 
-    /// Of a stop: no spindle turns, nothing flows.
+    /// Checks of a stop: no spindle turns and no coolant flows.
     void switch_devices_off();
 };
 
 void switch_devices_off(World &world);
-/// Once only.
+/// Called only once.
 void add(std::vector<World> &worlds, const World &world);
-/// The axes are where the status says: after what cannot be foretold.
+/// After an unpredictable event, takes the positions of the axes from the status.
 void adopt_place(const Bench &bench, Beliefs &beliefs);
-/// Of a machine at rest; worlds that do not fit are dropped. Empty, or "rule: what is wrong".
+/// Checks a machine at rest and drops the states that do not match. Returns an empty text, or "rule: fault".
 std::string judge(Bench &bench, messages::Mode mode, Beliefs &beliefs);
 
 }  // namespace mw::task_campaign

@@ -100,7 +100,7 @@ std::string Bench::come_up() {
             return trouble;
         }
     }
-    if (!disk_.names.contains(var)) {  // as the disk is to have all numbers from the start on
+    if (!disk_.names.contains(var)) {  // the disk has all numbers from the start
         static_cast<void>(machine_->task().save_parameters());
     }
     return bind();
@@ -161,7 +161,7 @@ void Bench::die(bool isPowerCut) {
 }
 
 void Bench::lose_client(int number) {
-    constexpr std::uint64_t NOBODY = 0x3fffff;  // the number of no process
+    constexpr std::uint64_t NOBODY = 0x3fffff;  // a number that no process has
     constexpr int START_BITS = 42;
     auto &client = clients_[static_cast<std::size_t>(number)];
     for (mailbox::Slot &slot : machine_->mailbox().slots) {
@@ -169,7 +169,7 @@ void Bench::lose_client(int number) {
             slot.owner.store(NOBODY << START_BITS | 1U);
         }
     }
-    static_cast<void>(client.release());  // nothing of it leaves in order
+    static_cast<void>(client.release());  // none of its output is sent in order
     static_cast<void>(join(static_cast<std::size_t>(number)));
 }
 
@@ -177,7 +177,7 @@ void Bench::cycle() {
     step_changer();
     machine_->cycle();
     ++now_ms_;
-    // As `millwright start` does it.
+    // As `millwright start` does.
     if (status().task.programs_ended != programs_ended_) {
         programs_ended_ = status().task.programs_ended;
         static_cast<void>(machine_->task().save_parameters());
@@ -197,7 +197,7 @@ void Bench::step_changer() {
     }
 }
 
-/// The writer's thread is late by up to so much.
+/// Maximum delay of the writer's thread.
 void Bench::step_disk() {
     if (--late_ms_ <= 0) {
         late_ms_ = static_cast<int>(random_() % MOST_LATE_MS);

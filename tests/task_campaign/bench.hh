@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A whole machine in virtual time with several clients, a tool changer at its pins and a disk that can lose
-// what was not synced. It may die and come up again.
+// what was not synced. It may be killed and started again.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@
 
 namespace mw::task_campaign {
 
-/// What the changer does with what is asked of it.
+/// The reaction of the changer to its requests.
 struct Changer {
     int answer_ms = 20;
     bool isFaulted = false;
@@ -32,12 +32,12 @@ class Bench {
     Bench(const Plan &plan, std::filesystem::path folder);
     ~Bench();
 
-    /// Empty, or what went wrong.
+    /// Empty, or the error.
     std::string come_up();
-    /// All of the process is gone; with `isPowerCut` the disk loses what was not synced.
+    /// All data of the process are lost; with `isPowerCut` the disk loses what was not synced.
     void die(bool isPowerCut);
     bool isUp() const { return machine_ != nullptr; }
-    /// A cycle of task, a millisecond.
+    /// A cycle of task, one millisecond.
     void cycle();
     std::int64_t now_ms() const { return now_ms_; }
 
@@ -47,7 +47,7 @@ class Bench {
     const messages::MachineStatus &status() const { return machine_->task().status(); }
     machine::Machine &machine() { return *machine_; }
 
-    /// What HAL sees of the machine.
+    /// State of the machine in HAL.
     struct Pins {
         volatile bool *chain, *is_amp_on, *spindle_on, *mist, *flood, *tool_prepare, *tool_change,
             *in_position;
@@ -57,12 +57,12 @@ class Bench {
     };
     const Pins &pins() const { return pins_; }
 
-    /// The parameter file as the disk has it: what the writer has done.
+    /// The parameter file on the disk, as the writer has written it.
     std::map<int, double> parameters() const;
     std::string tool_table() const;
     void write_tool_table(const std::vector<Tool> &tools) const;
     std::string write_program(const std::string &text);
-    /// What was asked of the writer is done.
+    /// All requests to the writer are done.
     void flush() { writer_->work(); }
     static constexpr int MOST_LATE_MS = 120;
 

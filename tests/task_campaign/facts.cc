@@ -13,7 +13,7 @@ namespace {
 constexpr const char *LETTERS = "XYZ";
 constexpr double FEED_MM_MIN = 9000;
 
-/// The parameter file has six digits behind the point.
+/// The parameter file has six digits after the point.
 double rounded(double value) {
     constexpr double DIGITS = 1e6;
     return std::round(value * DIGITS) / DIGITS;
@@ -23,7 +23,7 @@ double unit(const Modes &m) {
     return m.isInch ? MM_PER_INCH : 1;
 }
 
-/// Of the axes where program coordinates are zero.
+/// The axis positions at which program coordinates are zero.
 double origin(const Modes &m, std::size_t axis) {
     return m.systems[static_cast<std::size_t>(m.system - 1)][axis] + m.g92[axis] + (axis == 2 ? m.tool_z : 0);
 }
@@ -36,7 +36,7 @@ bool move(const Line &line, World &w) {
             to[i] = w.modes.isAbsolute ? by + origin(w.modes, i) : to[i] + by;
         }
     }
-    w.doings.at = to;  // as the interpreter reads on; the axes do not go there
+    w.doings.at = to;  // while the interpreter reads; the axes do not move there
     return std::ranges::all_of(to, [](double x) { return std::abs(x) <= LIMIT_MM; });
 }
 
@@ -110,7 +110,7 @@ bool apply_device(const Line &line, World &w) {
     case Kind::SET_TOOL: return set_tool(line, w);
     case Kind::SELECT: return isTool;
     case Kind::CHANGE:
-        // It stops the spindle, whether the tool is there already or not.
+        // The spindle stops, whether the tool is already in it or not.
         if (isTool) {
             d.direction = 0;
             d.turning_rpm = 0;
@@ -371,7 +371,7 @@ Line make_wrong_line(plants::Random &random) {
 }
 
 bool isSame(double a, double b) {
-    constexpr double DIGITS_OF_A_FILE = 2e-5;  // several figures of six digits behind the point, added
+    constexpr double DIGITS_OF_A_FILE = 2e-5;  // several numbers with six digits after the point, added
     return std::abs(a - b) < DIGITS_OF_A_FILE;
 }
 

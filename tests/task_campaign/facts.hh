@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What lines of G-code mean, as the manual says it, in as few words as a judge needs: knows nothing of the
-// interpreter, of task or of messages.
+// The meaning of lines of G-code by the manual, as far as a judge needs it. Independent of the interpreter,
+// of task and of messages.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct Tool {
     bool operator==(const Tool &) const = default;
 };
 
-/// What programs set: a stop leaves it as the block that is executed has it.
+/// State set by programs; after a stop it is that of the executed block.
 struct Modes {
     bool isAbsolute = true, isInch = false;
     int system = 1;                        ///< G54 is 1
@@ -33,13 +33,13 @@ struct Modes {
     bool isG92On = false;
     double tool_z = 0;  ///< G43
     Place g28{}, g30{};
-    double kept = 0;         ///< #3101, which the parameter file has
+    double kept = 0;         ///< #3101, which is in the parameter file
     double feed_mm_min = 0;  ///< F
     double speed_rpm = 0;    ///< S
     bool operator==(const Modes &) const = default;
 };
 
-/// What the machine has done: a stop leaves it where it was carried out to.
+/// Actions of the machine; a stop keeps those that were carried out.
 struct Doings {
     int in_spindle = 0;
     std::vector<Tool> tools;
@@ -52,7 +52,7 @@ struct Doings {
 
     double z_of(int tool) const;
     bool has(int tool) const;
-    /// The tool comes into the spindle; of a random changer the other one takes its pocket.
+    /// Puts the tool into the spindle; in a random changer the previous tool gets its pocket.
     void load(int tool);
 };
 
@@ -78,7 +78,7 @@ enum class Kind {
     RESTORE_G92,
     KEEP_G28,
     KEEP_G30,
-    OFFSET,  // G43 H number; 0: that of the spindle
+    OFFSET,  // G43 H number; 0: the tool in the spindle
     NO_OFFSET,
     SET_TOOL,  // G10 L1 P number Z
     CHANGE,    // T number M6
@@ -111,14 +111,14 @@ struct Line {
 bool apply(const Line &line, World &world, bool isBlockDelete);
 /// M2.
 void end_program(World &world);
-/// What is left of it after a crash, as the parameter file and the tool table have it.
+/// The state that remains after a crash, from the parameter file and the tool table.
 World after_crash(const World &kept);
 
-/// A line that can be carried out in that world.
+/// A line that can be executed in that state.
 Line make_line(plants::Random &random, const World &world);
 Line make_wrong_line(plants::Random &random);
 
-/// "" or the first thing in which they differ.
+/// "" or the first difference.
 std::string difference(const Modes &expected, const Modes &seen);
 std::string difference(const std::vector<Tool> &expected, const std::vector<Tool> &seen);
 bool isSame(double a, double b);

@@ -8,7 +8,7 @@
 namespace mw::task_campaign {
 namespace {
 
-/// Of a session, in which nothing takes long.
+/// For a session, in which all actions are short.
 constexpr std::int64_t MOST_MS = 600000;
 
 /// Replaces figures, so that rejections can be counted by reason.
@@ -159,7 +159,7 @@ void Operators::forget_orders(int client) {
     }
     std::erase_if(orders_, [client](const Order &order) { return client < 0 || order.client == client; });
     if (client < 0) {
-        ended_.clear();  // another count begins
+        ended_.clear();  // another count starts
     }
 }
 

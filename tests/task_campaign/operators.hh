@@ -50,19 +50,19 @@ class Operators {
     messages::Progress ask(int client, const messages::Command &command, Expected expected = Expected::ANY);
     messages::Progress progress_of(Serial serial) const;
     bool isWaited(Serial serial) const;
-    /// Commands of this client are not waited for; -1: of no client.
+    /// Commands of this client are not awaited; -1: of no client.
     void forget_orders(int client);
     const messages::MachineStatus &status() const { return bench_.status(); }
     bool isRunning() const { return status().task.interp_state != messages::InterpState::IDLE; }
     /// Acts as the operator: resumes after pauses, confirms proposals.
     void nurse();
-    /// Waits until nothing runs, moves, waits or is to be written.
+    /// Waits until nothing runs, moves, waits or remains to be written.
     void settle();
 
     Bench bench_;
     std::FILE *tell_;
     Verdict verdict_;
-    messages::Mode mode_ = messages::Mode::MANUAL;  ///< that was set last
+    messages::Mode mode_ = messages::Mode::MANUAL;  ///< the last setting
     /// Mode that was being set at a stop, or the jog mode at the end of a released program. It may be active
     /// or not.
     std::optional<messages::Mode> mode_under_way_;

@@ -9,7 +9,7 @@
 namespace mw::task_campaign {
 namespace {
 
-/// Lines as if the world before were known; what has really become of it does not matter.
+/// Lines are planned as if the previous state were known; the actual state does not matter.
 std::vector<Line> make_lines(plants::Random &random, World world, int count) {
     std::vector<Line> lines;
     for (int i = 0; i < count; ++i) {

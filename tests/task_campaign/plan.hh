@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// From a seed: the machine, what its operators do, and what goes wrong meanwhile.
+// The plan of a seed: the machine, the actions of its operators, and the faults during them.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ enum class Work {
     HOME,
     TABLE,    ///< a tool is set, the table is written by another program and read again
     STATE,    ///< off, emergency stop, and on again
-    ODD,      ///< commands that may fit or not
+    ODD,      ///< commands that may be valid or not
     OPERATE,  ///< one client operates alone
     CRASH,    ///< of the whole machine, at rest
 };
@@ -36,14 +36,14 @@ enum class Upset {
     OVERRIDE,
     ODD,
     CLIENT_GONE,
-    // --- these end it
+    // --- the work ends after these
     ABORT,
     OFF,
     ESTOP,
     CHAIN,
     CHANGER_FAULT,
     RESET_INTERPRETER,
-    KILLED,     ///< as by kill -9: what was given to the disk is there
+    KILLED,     ///< as by kill -9: data passed to the disk are kept
     POWER_CUT,  ///< what was not synced is lost
 };
 inline constexpr int UPSET_COUNT = static_cast<int>(Upset::POWER_CUT) + 1;
@@ -57,14 +57,14 @@ struct Trouble {
     Upset what = Upset::PAUSE;
     int at_ms = 0, length_ms = 50;
     int client = 0;
-    std::uint64_t seed = 0;  ///< of what it chooses by itself
+    std::uint64_t seed = 0;  ///< of its own choice
 };
 
 struct Act {
     Work work = Work::PROGRAM;
     int client = 0;
     std::vector<Line> blocks;      ///< of the program; lines of MDI
-    bool isLineTypedLate = false;  ///< lines of MDI come one after the other
+    bool isLineTypedLate = false;  ///< lines of MDI follow each other
     std::uint64_t seed = 0;
     std::vector<Trouble> troubles;
 };
@@ -72,13 +72,13 @@ struct Act {
 struct Plan {
     std::uint64_t seed = 0;
     bool isRandomChanger = false;
-    int changer_ms = 20;  ///< it answers after so long
+    int changer_ms = 20;  ///< the answer comes after this time
     std::vector<Tool> tools;
     std::vector<Act> acts;
 };
 
 Plan make_plan(std::uint64_t seed);
-/// In the words of campaign_runner/kept.hh.
+/// In the syntax of campaign_runner/kept.hh.
 Plan reduced(const Plan &plan, const std::string &kept);
 
 }  // namespace mw::task_campaign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs a plan: operators who do the acts, the troubles at their instants; keeps what the machine may be in by
-// the facts, and compares.
+// Runs a plan: operators do the acts, the faults occur at their times; keeps the possible states of the
+// machine by the facts, and compares.
 #pragma once
 
 #include <vector>
@@ -17,12 +17,12 @@ class Session : private Operators {
     Verdict run();
 
   private:
-    /// How a run has ended.
+    /// The final state of a run.
     enum class End { DONE, FAILED, REFUSED, CRASHED };
-    /// A line of MDI that was typed.
+    /// A line of MDI that was entered.
     struct Typed {
         Serial serial = 0;
-        std::int64_t done_ms = -1;  ///< before: not
+        std::int64_t done_ms = -1;  ///< false before
     };
 
     bool prepare(messages::Mode mode);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What operators do besides programs and lines.
+// Acts of operators other than programs and lines.
 #include <algorithm>
 #include <functional>
 
@@ -132,7 +132,7 @@ void Session::change_state(const Act &act) {
     beliefs_.switch_devices_off();
 }
 
-/// One of a heap. At rest it is known whether it must be taken; else it must have an end.
+/// One of many commands. At rest it is known whether it must be accepted; otherwise it must end.
 void Session::try_odd(int client, std::uint64_t seed, bool isAtRest) {
     using messages::Mode;
     using messages::State;
@@ -176,7 +176,7 @@ void Session::try_odd(int client, std::uint64_t seed, bool isAtRest) {
         return;
     }
     if (std::holds_alternative<messages::StepProgram>(all[choice].command)) {
-        choice = 0;  // where nothing runs it begins a program
+        choice = 0;  // starts a program if none is running
     }
     const Odd &odd = all[choice];
     const bool isDone = ask(client, odd.command, odd.expected) == messages::Progress::DONE;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines of MDI, typed at once or one after the other.
+// Lines of MDI, entered at once or one after the other.
 #include <algorithm>
 
 #include "task_campaign/after_stop.hh"
@@ -70,11 +70,11 @@ void Session::run_mdi(const Act &act) {
     }
 }
 
-/// Nothing: it has ended otherwise than it must.
+/// Nothing if it has ended with an unexpected result.
 std::vector<World> Session::after_line(const Line &line, const Typed &typed,
                                        const std::vector<World> &before) {
     const messages::Progress progress = progress_of(typed.serial);
-    // The writer may not have had the time to keep what it has set.
+    // The writer may not have had the time to save the settings.
     const bool isLate = isCrashed_ && typed.done_ms + Bench::MOST_LATE_MS >= bench_.now_ms();
     std::vector<World> all;
     for (const World &world : before) {

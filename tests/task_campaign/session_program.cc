@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs, from their beginning or a line, to their end, a stop or a crash, and after it.
+// Programs, from their start or from a line, to their end, a stop or a crash, and the work after it.
 #include <algorithm>
 
 #include "task_campaign/after_stop.hh"
@@ -30,7 +30,7 @@ std::vector<World> stopped_again(const std::vector<Line> &lines, const std::vect
     return all;
 }
 
-/// Where it begins; 0: as a program does.
+/// Line at which it starts; 0: the start of the program.
 std::size_t first_line_of(const Act &act) {
     return act.work == Work::FROM_LINE ? 1 + act.seed % (act.blocks.size() + 1) : 0;
 }
@@ -91,7 +91,7 @@ void Session::end_program_of(const Act &act, End end) {
         for (const World &one : after_stop(act.blocks, world, beliefs_.isBlockDelete, first_line_of(act))) {
             add(stopped, one);
         }
-        if (act.work == Work::FROM_LINE) {  // its search has failed: nothing is changed
+        if (act.work == Work::FROM_LINE) {  // its search has failed, so nothing is changed
             add(stopped, world);
         }
     }
@@ -107,7 +107,7 @@ void Session::end_program_of(const Act &act, End end) {
         if (!mayFail && act.work != Work::FROM_LINE) {
             fail("work", "a program without a stop does not end");
         }
-        // A step that came too late has begun it again.
+        // A step that came too late has started it again.
         const std::uint64_t runs = status().task.programs_ended - ended_before_;
         for (std::uint64_t again = 1; again < runs; ++again) {
             stopped = stopped_again(act.blocks, stopped, beliefs_.isBlockDelete);
@@ -123,11 +123,12 @@ void Session::end_program_of(const Act &act, End end) {
     }
 }
 
-/// The parameter file is as before the program; the tool table file as the machine had come to.
+/// The parameter file is as before the program; the tool table file has the state that the machine had
+/// reached.
 void Session::end_by_crash(const Act &act) {
     std::vector<World> before = std::move(beliefs_.worlds);
     beliefs_.worlds.clear();
-    // A step that came too late has begun it again, from what its end had left.
+    // A step that came too late has started it again, from the state at its end.
     for (std::uint64_t again = 0; again < runs_before_crash_; ++again) {
         std::vector<World> left;
         for (const World &world : before) {
@@ -177,7 +178,7 @@ void Session::recover(const Act &act, const World &before, bool isBlockDelete) {
     if (isOver()) {
         return;
     }
-    // The switches are those with which it began, from when the way was confirmed on.
+    // The switches have their values of the start, from the confirmation of the approach on.
     const messages::TaskStatus &task = status().task;
     const bool areRestored = task.isBlockDelete == wasBlockDelete_ && task.isOptionalStop == wasOptionalStop_;
     if (progress_of(run) == messages::Progress::DONE || areRestored) {

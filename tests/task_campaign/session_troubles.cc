@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What goes wrong in a run, and what other people do meanwhile.
+// Faults during a run, and actions of other operators at the same time.
 #include <utility>
 
 #include "task_campaign/session.hh"
@@ -37,7 +37,7 @@ void Session::begin(const Trouble &t) {
     const bool isEstop = t.what == Upset::ESTOP || t.what == Upset::CHAIN;
     areDevicesOff_ = areDevicesOff_ || isEstop || t.what == Upset::ABORT || t.what == Upset::OFF;
     if (areDevicesOff_ && status().task.isAway) {
-        // In which the axes were jogged, where motion had let them go.
+        // Faults in which the axes were jogged where motion had released them.
         const bool areLetGo = status().trajectory.mode != messages::MotionMode::COORD;
         mode_ = areLetGo ? messages::Mode::MANUAL : mode_;
     }
@@ -48,7 +48,7 @@ void Session::begin(const Trouble &t) {
     case Upset::STEP:
         post(t.client, messages::PauseProgram{});
         cycles(t.length_ms);
-        for (int i = 0; i < 3 && isRunning(); ++i) {  // where nothing runs it would begin the program
+        for (int i = 0; i < 3 && isRunning(); ++i) {  // would start the program if none is running
             post(t.client, messages::StepProgram{});
             cycles(t.length_ms);
         }
@@ -78,7 +78,7 @@ void Session::begin(const Trouble &t) {
     }
 }
 
-/// The tool is taken away from a held program and comes back.
+/// The tool is removed from a held program and returned.
 void Session::leave(const Trouble &t) {
     isHeldByUs_ = true;
     ask(t.client, messages::PauseProgram{});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A contour as its generator knows it: u along the cut, h away from the part. Lengths in mm.
+// A contour, as defined by its generator: u along the cut, h away from the part. Lengths in mm.
 #pragma once
 
 #include <algorithm>
@@ -26,12 +26,12 @@ struct Stroke {
 
     double radius() const { return span(centre, from); }
     double angle_of(Place p) const { return std::atan2(p.h - centre.h, p.u - centre.u); }
-    /// How far the arc turns to `p`, 0 to a full turn [rad].
+    /// Angle of the arc up to `p`, 0 to a full turn [rad].
     double turned(Place p) const {
         const double way = (angle_of(p) - angle_of(from)) * (isCounterclockwise ? 1.0 : -1.0);
         return way - 2.0 * std::numbers::pi * std::floor(way / (2.0 * std::numbers::pi));
     }
-    /// The place after the part `t` of the way.
+    /// The point after the fraction `t` of the piece.
     Place at(double t) const {
         if (!isArc) {
             return {from.u + t * (to.u - from.u), from.h + t * (to.h - from.h)};
@@ -55,13 +55,13 @@ struct Stroke {
     }
 };
 
-/// A part's outline, its material below.
+/// The outline of a part; the material is below it.
 struct Contour {
     std::vector<Stroke> strokes;
 
     Place first() const { return strokes.front().from; }
     Place last() const { return strokes.back().to; }
-    /// The material's height at `u`; far below beside the contour.
+    /// The height of the material at `u`; far below outside the contour.
     double height(double u) const {
         double best = -1e9;
         for (const Stroke &s : strokes) {
@@ -80,7 +80,7 @@ struct Contour {
         }
         return best;
     }
-    /// From the outline, whichever side.
+    /// Distance from the outline, on either side.
     double distance(Place p) const {
         double best = 1e9;
         for (const Stroke &s : strokes) {
@@ -88,9 +88,9 @@ struct Contour {
         }
         return best;
     }
-    /// From the material; below 0 inside of it.
+    /// Distance from the material; negative inside it.
     double clearance(Place p) const { return p.h < height(p.u) ? -distance(p) : distance(p); }
-    /// Its highest place, up to `u`.
+    /// Its highest point, up to `u`.
     double highest(double u = 1e9) const {
         double best = height(u);
         for (const Stroke &s : strokes) {

@@ -44,7 +44,7 @@ class Maker {
     std::map<std::size_t, double> radii_;  ///< of arcs given by R, by the number of strokes with them
 };
 
-/// To the digits of the program.
+/// Rounded to the digits of the program.
 Place Maker::rounded(Place p) const {
     const double unit = std::pow(10.0, digits_), scale = job_.isInch ? MM_PER_INCH : 1.0;
     const auto round = [&](double mm, double origin, double sign, bool isX) {
@@ -164,7 +164,7 @@ void Maker::make_contour() {
     const Place first = rounded({0.0, number(1.0, isRisingOnly ? 8.0 : 16.0)});
     job_.isMonotonic = true;
     Stroke begin{first, first, false, {}, false};
-    job_.contour.strokes.push_back(begin);  // until there is another
+    job_.contour.strokes.push_back(begin);  // until there is another cycle
     bool isUpright = false;
     for (int tries = 0; tries < 400 && static_cast<int>(job_.contour.strokes.size()) <= count; ++tries) {
         const double fall = isRisingOnly ? 0.0 : -number(0, 6);
@@ -192,7 +192,7 @@ void Maker::make_contour() {
                             : isUpright;
     }
     const Stroke &end = job_.contour.strokes.back();
-    if (end.to.h < end.from.h && end.to.u - end.from.u < 0.02) {  // no width is left there to turn down to
+    if (end.to.h < end.from.h && end.to.u - end.from.u < 0.02) {  // no width is left to be turned
         job_.contour.strokes.pop_back();
     }
     if (job_.contour.strokes.size() == 1) {
@@ -305,7 +305,7 @@ LatheJob Maker::make() {
     choose_cycles();
     const bool isAbove = job_.start.u > job_.contour.first().u;
     if (isAbove && job_.start.h < job_.contour.highest() + job_.largest_allowance() + 0.1) {
-        job_.start = rounded({job_.contour.first().u - 1.0, job_.start.h});  // it is in the allowance there
+        job_.start = rounded({job_.contour.first().u - 1.0, job_.start.h});  // the point is in the allowance
     }
     static constexpr const char *OUTSIDE[] = {"G80\n", "G0\n", "G1\n", ""};
     std::string &out = job_.program;
@@ -315,7 +315,7 @@ LatheJob Maker::make() {
     out += FIRST[pick(3)] + words_to(job_.contour.first(), job_.start, chance(0.8)) + "\n";
     for (std::size_t i = 0; i < job_.contour.strokes.size(); ++i) {
         const Stroke &stroke = job_.contour.strokes[i];
-        // While it was made, the contour had one stroke more.
+        // When it was made, the contour had one more stroke.
         out += stroke.isArc ? arc_words(stroke, i + 2) : "G1" + words_to(stroke.to, stroke.from, false);
         out += "\n";
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random turning jobs: a contour, where the tool starts, and the program that cuts it with G70 to G72.
+// Random turning jobs: a contour, the start of the tool, and the program that cuts the contour with G70 to
+// G72.
 #pragma once
 
 #include <random>
@@ -13,7 +14,7 @@ namespace mw::testing {
 /// One cycle of a job.
 struct JobCycle {
     std::string code;      ///< "71", "71.1", ... or "70"
-    double allowance = 0;  ///< D [mm]; of G70 what is left at its end
+    double allowance = 0;  ///< D [mm]; for G70, the allowance at its end
     double step = 0;       ///< I [mm]
     bool isPocketLeft = false;
     bool isFinishing = false;
@@ -24,12 +25,12 @@ struct LatheJob {
     bool isFacing = false, isInside = false, isInch = false, isDiameter = false;
     bool isMonotonic = false;  ///< the contour never falls
     bool hasArcs = false;
-    Contour contour;  ///< of the rounded numbers of the program [mm]
+    Contour contour;  ///< rounding error of the numbers of the program [mm]
     Place start;      ///< of the cycles
     std::vector<JobCycle> cycles;
     std::string program;  ///< a G4 P0 before each cycle
 
-    /// Where Z and X of the machine [mm] are along the cut.
+    /// Directions of the machine's Z and X along the cut.
     Place place(double z, double x) const;
     /// From u and h to Z and X.
     void machine(Place p, double &z, double &x) const;

@@ -6,8 +6,8 @@
 namespace mw::testing {
 namespace {
 
-constexpr double MIDDLE = 0.4637;     ///< of a column: no place that programs name
-constexpr double FACE = 0.001;        ///< what touches the face in front is in air [mm]
+constexpr double MIDDLE = 0.4637;     ///< of a column: no position that programs name
+constexpr double FACE = 0.001;        ///< contact with the front face is in air [mm]
 constexpr double CHORD_ERROR = 2e-5;  ///< of arcs as chords [mm]
 
 std::string at_text(Place p) {
@@ -37,7 +37,7 @@ double LatheStock::lowest_near(double u) const {
     return lowest;
 }
 
-/// Whether all that lies up to `top` is what cycles before have left on the contour or on the face at its
+/// Whether all material up to `top` is the allowance of earlier cycles on the contour or on the face at its
 /// end.
 bool LatheStock::isSkin(Place top, const CutRules &rules) const {
     const double reach = rules.skin + rules.tolerance + NEAR;
@@ -67,7 +67,7 @@ std::string LatheStock::cut_to(Place from, Place to, bool isRapid, const CutRule
         return static_cast<long>(std::ceil((u - first_u) / COLUMN - MIDDLE));
     };
     const long end = std::min(index(right.u), static_cast<long>(columns_.size()));
-    // On a slope the tolerance of the contour is as much more of the height.
+    // On a slope the tolerance of the contour is a correspondingly larger part of the height.
     const double slope = right.u > left.u ? std::fabs(right.h - left.h) / (right.u - left.u) : 0.0;
     const double deepest = rules.step + DEPTH_SPARE + rules.tolerance * slope;
     for (long i = std::max(0L, index(left.u)); i < end; ++i) {
@@ -115,7 +115,7 @@ std::string LatheStock::unfinished(double allowance, bool isPocketLeft, double e
         }
         rim = std::fmax(rim, contour_.highest(p.u));
         const bool isLeft = isPocketLeft && p.h <= rim + allowance + 2.0 * DEPTH_SPARE;
-        // The walls beside a column are as near as its middle.
+        // The walls beside a column are as close as its middle.
         if (!isLeft && contour_.clearance(p) > allowance + NEAR) {
             return fmt::format("{:.3f} left {}", contour_.clearance(p), at_text(p));
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A turned blank as a height map, cut by a pointed tool: what rapid moves, layers and gouges do to it, and
-// what is left.
+// A turned blank as a height map, cut by a pointed tool: detects rapid moves in material, deep layers and
+// gouges, and measures the remaining material.
 #pragma once
 
 #include <string>
@@ -9,35 +9,36 @@
 
 namespace mw::testing {
 
-/// A move as the machine makes it.
+/// A move as the machine executes it.
 struct StockMove {
     bool isRapid = false;
     Stroke path;
 };
 
-/// What one cycle may do.
+/// Limits for one cycle.
 struct CutRules {
-    double allowance = 0;  ///< that it has to leave on the contour [mm]
+    double allowance = 0;  ///< allowance to be left on the contour [mm]
     double step = 1;       ///< deepest layer [mm]
-    double skin = 0;  ///< what cycles before it have left on the contour: one pass may take all of it [mm]
+    double skin = 0;  ///< allowance that earlier cycles have left on the contour; one pass may remove all of
+                      ///< it [mm]
     double tolerance = 0.003;  ///< of the contour [mm]
 };
 
 class LatheStock {
   public:
     static constexpr double COLUMN = 0.01;        ///< [mm]
-    static constexpr double NEAR = 0.02;          ///< walls are as steep as this is wide [mm]
+    static constexpr double NEAR = 0.02;          ///< width of the steepest walls [mm]
     static constexpr double DEPTH_SPARE = 0.005;  ///< of heights [mm]
 
-    /// Material from the contour's first point on to `behind` mm after its end, up to `surface`.
+    /// Material from the contour's first point to `behind` mm after its end, up to `surface`.
     LatheStock(const Contour &contour, double surface, double behind);
 
-    /// Moves the tool and takes off what it meets. What is wrong with that, or nothing.
+    /// Moves the tool and removes the material that it meets. Returns the fault, or nothing.
     std::string cut(const StockMove &move, const CutRules &rules);
     double surface_at(double u) const;
-    /// Where more than `allowance` is left on the contour; on the envelope that has no pockets instead, if
-    /// asked for. Nothing when the work is done. The last `end_allowance` mm before the contour's end do not
-    /// count.
+    /// The position at which more than `allowance` is left on the contour, or on its envelope without
+    /// pockets. Nothing when the work is complete. The last `end_allowance` mm before the contour's end do
+    /// not count.
     std::string unfinished(double allowance, bool isPocketLeft, double end_allowance) const;
 
   private:

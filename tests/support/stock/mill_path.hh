@@ -19,7 +19,7 @@ inline double flat_distance(FlatPoint a, FlatPoint b) {
     return std::hypot(b.x - a.x, b.y - a.y);
 }
 
-/// A straight line or an arc that is driven from `start` to `end`.
+/// A straight line or an arc from `start` to `end`.
 struct FlatPiece {
     FlatPoint start, end;
     bool isArc = false;
@@ -80,7 +80,7 @@ inline int samples_of(const FlatPiece &piece, double step) {
     return std::clamp(static_cast<int>(std::ceil(piece.length() / step)), 4, 20000);
 }
 
-/// How far the tool comes nearer to the contour than its radius; the worst place.
+/// Largest amount by which the tool comes closer to the contour than its radius, and its position.
 struct Gouge {
     double depth = 0;
     FlatPoint place;
@@ -99,7 +99,7 @@ inline Gouge worst_gouge(const FlatPath &tool_path, const FlatPath &contour, dou
     return worst;
 }
 
-/// What the tool has left standing where it could have cut.
+/// Material that the tool has left although it could have cut it.
 struct Leftover {
     double height = 0;               ///< on the contour
     FlatPoint place;                 ///< of the contour
@@ -108,11 +108,12 @@ struct Leftover {
 
 /// The part of a piece that is to be cut.
 struct Stretch {
-    double from = 0, to = 1;  ///< shares of the piece
+    double from = 0, to = 1;  ///< fractions of the piece
 };
 
-/// `stretches` says of each piece what the tool is due to cut; `side` is +1 for a tool to the left of the
-/// contour, else -1. Places where it would come nearer than its radius less `free` to a wall need not be cut.
+/// `stretches` defines the part of each piece that the tool must cut; `side` is +1 for a tool to the left of
+/// the contour, else -1. Points where the tool would be closer to a wall than its radius less `free` need not
+/// be cut.
 inline Leftover worst_leftover(const FlatPath &tool_path, const FlatPath &contour,
                                const std::vector<Stretch> &stretches, const FlatPath &walls, double radius,
                                int side, double tolerance, double free) {
@@ -127,7 +128,7 @@ inline Leftover worst_leftover(const FlatPath &tool_path, const FlatPath &contou
             if (!isDue || path_distance(walls, due) < radius - free) {
                 continue;
             }
-            // From the other side it is not cut.
+            // The tool does not cut from the other side.
             const bool isBeside = path_distance(tool_path, due) < 0.3 * radius;
             const double left = path_distance(tool_path, piece.at(share)) - radius;
             const double height = isBeside ? left : radius;

@@ -20,13 +20,13 @@ class MillStock {
           rows_(static_cast<int>(std::ceil((high.y - low.y) / cell))), top_(high.z),
           heights_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), high.z) {}
 
-    /// What a move met [machine units].
+    /// Contacts of a move [machine units].
     struct Cut {
         double deepest = 0;  ///< material above the tool's end, at once
         StockPoint place;
     };
 
-    /// Moves the tool in a straight line and takes away what it meets.
+    /// Moves the tool in a straight line and removes the material that it meets.
     Cut cut(StockPoint from, StockPoint to, double radius) {
         const double way = std::hypot(to.x - from.x, to.y - from.y, to.z - from.z);
         const int steps = std::max(1, static_cast<int>(std::ceil(way / (0.5 * cell_))));
@@ -47,7 +47,7 @@ class MillStock {
     StockPoint centre(int column, int row) const {
         return {low_.x + (column + 0.5) * cell_, low_.y + (row + 0.5) * cell_, height(column, row)};
     }
-    /// Of the cell that the point is in; the top outside of the block.
+    /// Height of the cell at the point; the top outside the block.
     double height_at(double x, double y) const {
         const int column = static_cast<int>(std::floor((x - low_.x) / cell_));
         const int row = static_cast<int>(std::floor((y - low_.y) / cell_));
