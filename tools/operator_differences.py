@@ -81,7 +81,7 @@ def as_newer(shown):
 
 
 def errors_of(messages):
-    """Texts of the errors. Texts and displays (kinds 2, 3, 12, 13) are left out: what is reported beside errors differs."""
+    """Texts of the errors. Texts and displays (kinds 2, 3, 12, 13) are left out, because the reports besides errors differ."""
     return [text for kind, text in messages if kind in (1, 11)]
 
 

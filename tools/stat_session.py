@@ -17,7 +17,7 @@ PROGRAM = 'G21 G90 F3000\nG1 X0\nM8 S400 M3\nG1 X20 F300\nM0\nG4 P3\nG1 X0 F3000
 
 
 def shown(value):
-    """As JSON; numbers rounded, classes of sequences dropped."""
+    """The value as JSON, with rounded numbers and without classes of sequences."""
     if isinstance(value, float):
         return round(value, 4) + 0.0
     if isinstance(value, (tuple, list)):

@@ -115,7 +115,7 @@ def whole_text(seq, at):
 
 
 def key_of(text):
-    """As the catalogues have it: fmt's fields are {}, {{ is {."""
+    """The text in the form of the catalogues: fmt's fields are {}, {{ is {."""
     text = text.replace('{{', '\1').replace('}}', '\2')
     text = re.sub(r'(\{\})+', '{}', HOLE.sub('{}', text)).replace('\033[K', '').strip('\r\n')
     return text.replace('\1', '{').replace('\2', '}')

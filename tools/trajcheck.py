@@ -89,7 +89,7 @@ def without_repeats(points):
 
 
 class Chain:
-    """A polygonal curve, with what the intervals need, over the coordinates that move at all."""
+    """A polygonal curve over the coordinates that move, with the values for the intervals."""
 
     def __init__(self, points, used):
         self.groups = []

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// select8: makes true the one of `out0` to `out7` (bit) whose number is in `sel` (s32), while `enable` (bit,
-// true at start) is true; all others are false.
+// select8: sets the output of `out0` to `out7` (bit) whose number is in `sel` (s32) to true while `enable`
+// (bit, true at start) is true; all others are false.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What torch height controls share, without HAL: a correction of the Z axis. Realtime-safe.
+// Common code of torch height controls, without HAL: a correction of the Z axis. Realtime-safe.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// mux4: `out` (float) follows the one of `in0` to `in3` whose number is `sel0` + 2 `sel1` (bits).
+// mux4: `out` (float) follows the input of `in0` to `in3` whose number is `sel0` + 2 `sel1` (bits).
 #include "components/mux/selector.hh"
 #include "hal/sdk/component.hh"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// mux8: `out` (float) follows the one of `in0` to `in7` whose number `sel2` `sel1` `sel0` (bit) make.
+// mux8: `out` (float) follows the input of `in0` to `in7` that `sel2` `sel1` `sel0` (bit) select.
 #include "components/mux/selector.hh"
 #include "hal/sdk/component.hh"
 

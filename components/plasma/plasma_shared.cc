@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What all parts of the plasma controller share: moves by counts, and the ends of a cut.
+// Common functions of all parts of the plasma controller: moves by counts, and the ends of a cut.
 #include "components/plasma/plasma_shared.hh"
 
 #include <cmath>

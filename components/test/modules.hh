@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// All component modules, and what it takes to load each.
+// All component modules, with the arguments for loading each.
 #pragma once
 
 #include <map>

@@ -19,7 +19,7 @@ struct SourcePlace {
     std::string str() const;
 };
 
-/// What failed, where, and what to do about it. The message is complete without the hint.
+/// The failed operation, its position, and a hint for the user. The message is complete without the hint.
 struct Error {
     std::string message;
     SourcePlace place{};

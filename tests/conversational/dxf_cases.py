@@ -57,7 +57,7 @@ def corners(r, centre, d):
 
 
 def rounded(r, layer, centre, d):
-    """As one polyline with bulges, in either direction and of either type."""
+    """Writes one polyline with bulges, in either direction and of either type."""
     ends, pieces, _ = corners(r, centre, d)
     bulge = math.tan(math.radians(90 / 4))
     vertices = [v for a, b in ends for v in ((*a, 0.0), (*b, bulge))]
@@ -71,7 +71,7 @@ def rounded(r, layer, centre, d):
 
 
 def rounded_lines(r, layer, centre, d):
-    """As separate lines and arcs that end near each other, as drawing programs write them."""
+    """Writes separate lines and arcs with small gaps between their ends, like drawing programs."""
     _, pieces, _ = corners(r, centre, d)
     noise = r.choice([0.0, 5e-5, 4e-4]) * UNIT_NOISE[0]
     near = lambda value: value + r.uniform(-noise, noise)

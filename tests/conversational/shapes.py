@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Signed distances from the shapes that a form describes: negative inside of what is to be removed."""
+"""Signed distances from the shapes that a form describes: negative inside the material to be removed."""
 import math
 
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A Modbus slave, written from the protocol's specification, by TCP and by RTU; what it answers is its device's: answer(slave, request)."""
+"""A Modbus slave, written from the protocol's specification, by TCP and by RTU; the device supplies the answers: answer(slave, request)."""
 import os
 import socket
 import struct

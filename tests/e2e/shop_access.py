@@ -19,7 +19,7 @@ from publish_shop import Broker, free_port, wait_for
 USERS = ('shop', 'cell', 'other')
 BIRTH, DATA, COMMAND = 'spBv1.0/g/NBIRTH/cell', 'spBv1.0/g/DDATA/cell/Mill', 'spBv1.0/g/NCMD/cell'
 STATE, RECEIPT, DEVICE_COMMAND = 'spBv1.0/STATE/shop', 'millwright/stored/shop/g/cell', 'spBv1.0/g/DCMD/cell/Mill'
-# What a user receives: (topic, who published it). Each user publishes to each topic.
+# The messages that a user receives: (topic, publisher). Each user publishes to each topic.
 RECEIVED = {
     'shop': {(BIRTH, 'cell'), (DATA, 'cell'), (COMMAND, 'cell'), (COMMAND, 'shop'), (STATE, 'shop'), (DEVICE_COMMAND, 'cell')},
     'cell': {(COMMAND, 'cell'), (COMMAND, 'shop'), (STATE, 'shop'), (RECEIPT, 'shop')},

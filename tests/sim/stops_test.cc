@@ -12,7 +12,7 @@ constexpr const char *AHEAD =
     "G21 G90 G54\nG1 X20 F300\nG10 L2 P1 X5\nG92 Y1\nG43.1 Z2\nG91\nG20\nM64 P0\nM8\n"
     "S700\n#31=7\nG1 X1 F10\nM2\n";
 
-/// What screens show of modes, offsets and outputs.
+/// Modes, offsets and outputs as screens show them.
 std::string shown(const messages::MachineStatus &status) {
     std::string text;
     for (std::size_t i = 1; i < status.codes.g.size(); ++i) {

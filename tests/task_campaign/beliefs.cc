@@ -58,7 +58,7 @@ std::vector<Tool> tools_of(const std::string &text) {
     return tools;
 }
 
-/// What is the same in all worlds.
+/// State that is equal in all possible states.
 std::string state_trouble(const messages::MachineStatus &status, messages::Mode mode,
                           const Beliefs &beliefs) {
     const messages::TaskStatus &task = status.task;

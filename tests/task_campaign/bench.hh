@@ -34,7 +34,7 @@ class Bench {
 
     /// Empty, or the error.
     std::string come_up();
-    /// All data of the process are lost; with `isPowerCut` the disk loses what was not synced.
+    /// All data of the process are lost; with `isPowerCut` the disk loses unsynced data.
     void die(bool isPowerCut);
     bool isUp() const { return machine_ != nullptr; }
     /// A cycle of task, one millisecond.

@@ -44,7 +44,7 @@ enum class Upset {
     CHANGER_FAULT,
     RESET_INTERPRETER,
     KILLED,     ///< as by kill -9: data passed to the disk are kept
-    POWER_CUT,  ///< what was not synced is lost
+    POWER_CUT,  ///< unsynced data are lost
 };
 inline constexpr int UPSET_COUNT = static_cast<int>(Upset::POWER_CUT) + 1;
 const char *name_of(Upset upset);

@@ -71,8 +71,8 @@ class Access {
     static Access of_this_computer(Tokens tokens, Tokens cookies);
 
     Protection protection() const { return protection_; }
-    /// No role without a token or with a wrong one. `port` is that of the server; it separates the cookies of
-    /// servers on one computer.
+    /// Without a token, or with an invalid token, there is no role. `port` is that of the server; it
+    /// separates the cookies of servers on one computer.
     Role role_of(const Credentials &shown, int port) const;
     /// GET: the role of the request. POST {"token": "..."}: a cookie that scripts cannot read, for the
     /// browser; 403 for a wrong token, 429 after too many wrong tokens. DELETE: removes the cookie.

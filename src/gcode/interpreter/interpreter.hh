@@ -107,7 +107,7 @@ class Interpreter final : public ProgramInterpreter {
     /// Number of calls of Python.
     std::uint64_t count_script_calls() const;
 
-    /// For machines that read ahead of what they execute.
+    /// For machines that read blocks ahead of their execution.
     ReadAhead &read_ahead();
 
     /// Restrictions for all following programs and MDI lines.

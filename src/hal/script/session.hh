@@ -47,7 +47,7 @@ class StandardOutput final : public Output {
 enum class Verbosity {
     SILENT,     ///< only results
     ERRORS,     ///< also the report of each command
-    RESULTS,    ///< also what each command has done
+    RESULTS,    ///< also the effect of each command
     EVERYTHING  ///< also each command before it runs
 };
 
@@ -123,7 +123,7 @@ class Session {
     SessionOptions &options() { return options_; }
     Placeholders &placeholders() { return placeholders_; }
     void end() { ended_ = true; }
-    /// Reports what a command has done, at a sufficient verbosity.
+    /// Reports the effect of a command, at a sufficient verbosity.
     void info(const SourcePlace &place, std::string_view text);
     void warn(const SourcePlace &place, std::string_view text, std::string hint = {});
 
@@ -147,7 +147,7 @@ class Session {
 /// The folder of the running program.
 std::string program_folder();
 
-/// Folders of the HAL library: $MILLWRIGHT_HALLIB (colon separated), then the one beside this program
+/// Folders of the HAL library: $MILLWRIGHT_HALLIB (colon separated), then the folder next to this program
 /// (../share/hallib in a build folder, ../share/millwright/hallib installed).
 std::vector<std::string> default_library();
 

@@ -25,7 +25,7 @@ class CommandServer {
         std::uint64_t owner = 0;  ///< owner_word() of the client's process
     };
 
-    /// Who handles commands about the right to operate.
+    /// The handler of commands about the right to operate.
     enum class Rights : std::uint8_t { HERE, DELIVERED };
 
     /// `clock` returns the time of messages [ns]; without a clock it is CLOCK_MONOTONIC, which all processes

@@ -13,7 +13,7 @@ TABLE = {}
 
 @dataclasses.dataclass(frozen=True)
 class Attack:
-    """`causes`: what a message says when the attack stops the machine, None: it must not stop it. `busy`: servers that cannot answer
+    """`causes`: the text of the message when the attack stops the machine, None: it must not stop it. `busy`: servers that cannot answer
     meanwhile. `isHere`: runs in the process of the session. `needs`: 'mount', 'cgroup', 'user' (another one)."""
     name: str
     run: object

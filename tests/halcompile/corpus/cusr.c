@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* A program in C that looks at HAL and says what it sees on a pin. */
+/* A program in C that reads HAL and shows the result on a pin. */
 #include <signal.h>
 #include <unistd.h>
 

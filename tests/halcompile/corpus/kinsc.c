@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* Kinematics in C: joints are axes, with y turned round. */
+/* Kinematics in C: joints are axes, with y inverted. */
 #include "hal.h"
 #include "kinematics.h"
 #include "rtapi.h"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A component in Python: gives the double of what it reads."""
+"""A component in Python whose output is twice its input."""
 import time
 
 import hal

@@ -2,7 +2,7 @@
 // Work zeros: the lines that set and restore them, and the conditions for restoring.
 import { AXIS_LETTERS, axisIndex, type Codes, type Offsets } from './status';
 
-/** A zero that was set, and what it replaced. */
+/** A zero that was set, and the zero that it replaced. */
 export interface ZeroSet {
   /** Number of the coordinate system, 1 is G54. */
   system: number;

@@ -92,7 +92,7 @@ class PacketUarts final : public Module {
     }
 
   private:
-    /// What the current request reads from the receiver.
+    /// The data that the current request reads from the receiver.
     enum class Step : std::uint8_t { NONE, SIZE, BYTES };
     struct Instance {
         PacketUart uart;

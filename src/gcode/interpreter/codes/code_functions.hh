@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The functions of all codes by file, and what they change besides modes (State) and canon calls.
+// The functions of all codes by file, and their effects besides modes (State) and canon calls.
 #pragma once
 
 #include "gcode/interpreter/codes/code_parts.hh"

@@ -52,7 +52,7 @@ struct ScriptCall {
     bool isFunctionRunning() const { return stage != Stage::PROCEDURE; }
 };
 
-/// One call level: what it runs, and where its caller continues.
+/// One call level: the code that it runs, and the position at which its caller continues.
 struct Call {
     CallKind kind = CallKind::OWORD;
     NameId label = NO_ID;

@@ -39,7 +39,7 @@ struct ParamDeclaration {
 Result<> add_param(Segment &segment, CompRecord &comp, const ParamDeclaration &declared);
 
 enum class Outputs { AS_THEY_ARE, SAFE };
-/// Removes a component and what it owns; its outputs first take safe values or leave their values in the
+/// Removes a component and its objects; its outputs first take safe values or leave their values in the
 /// signals.
 void remove_comp(Segment &segment, CompRecord &comp, Outputs outputs) noexcept;
 

@@ -42,7 +42,7 @@ function readText(bytes: ArrayBuffer): Float32Array | null {
  * is not an STL file, has too many triangles, or no volume.
  */
 export function readStl(bytes: ArrayBuffer, unit_mm: number): Stock | null {
-  // A text file begins with `solid`. So do some binary files, whose length matches their count.
+  // A text file begins with `solid`. Some binary files also begin so; their length matches their count.
   const words = new DataView(bytes);
   const isBinary = bytes.byteLength >= HEAD_BYTES && bytes.byteLength === HEAD_BYTES + words.getUint32(80, true) * TRIANGLE_BYTES;
   const triangles = isBinary ? readBinary(bytes) : (readText(bytes) ?? readBinary(bytes));
