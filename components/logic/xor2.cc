@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// xor2: `out` is true while exactly one of `in0` and `in1` is. All pins bit.
+// xor2: `out` is true while exactly one of `in0` and `in1` is true. All pins are of type bit.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Row 15: stops of new clients while all places of the mailbox are taken, and while descriptors run out.
+"""Row 15: stops of new clients while all entries of the mailbox are occupied, and while descriptors run out.
 
 usage: crowd.py BIN_FOLDER ROOT [NAME]
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A machine that was killed leaves nothing that refuses the next start, whichever user starts it; one that lives is named.
+"""A machine that was killed leaves nothing that prevents the next start by any user; a running machine is named.
 
 usage: instances.py BIN_FOLDER ROOT
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The order in which the kernel ends the programs of a machine when memory is gone: the realtime process last.
+"""The order in which the kernel ends the programs of a machine when memory is exhausted: the realtime process last.
 
 usage: memory.py BIN_FOLDER ROOT [NAME]
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Messages of programs that clients cannot read as they are, and messages after the server of the screens was killed.
+"""Messages of programs that clients cannot read unchanged, and messages after the server of the screens was killed.
 
 usage: messages.py BIN_FOLDER ROOT [NAME]
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Whatever becomes of the terminal, pipe or file that `millwright start` writes to, the machine cuts on, answers and ends.
+"""Whatever happens to the terminal, pipe or file of `millwright start`, the machine continues to cut, answers and ends.
 
 usage: output.py BIN_FOLDER ROOT [gone|unread|stopped|full]
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A machine whose folder cannot be written says so when it starts. Needs an ordinary user: root writes everywhere.
+"""A machine whose folder cannot be written reports this when it starts. Needs an ordinary user, because root can write everywhere.
 
 usage: places.py BIN_FOLDER ROOT
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A machine that is attacked while it cuts: a copy of configs/sim/mill_mm.ini in realtime as an instance of its own, and a client of
+"""A machine that is attacked while it cuts: a copy of configs/sim/mill_mm.ini in realtime as a separate instance, and a client of
 Python's linuxcnc beside it."""
 import os
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A process of a machine that cuts is stopped by SIGSTOP and continued: what moves, turns and flows stops, stops are not reported as
+"""A process of a machine that cuts is stopped by SIGSTOP and continued: axes, spindle and coolant stop, stops are not reported as
 done where they are not, and the operator reads which process it was.
 
 usage: stopped.py BIN_FOLDER ROOT [NAME]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Clients of `millwright ui` that never read, hang up, ask for endless work, or belong to another user.
+"""Clients of `millwright ui` that never read, disconnect, request endless work, or belong to another user.
 
 usage: web.py BIN_FOLDER ROOT
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares the moves of one operation with the values of its form: nothing dangerous, and the shape as drawn."""
+"""Compares the moves of one operation with the values of its form: no dangerous move, and the shape of the drawing."""
 import math
 
 import numpy as np

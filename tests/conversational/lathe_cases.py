@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Random forms of lathe operations, as cases.py."""
+"""Random forms of lathe operations, in the manner of cases.py."""
 import cases
 
 KINDS = ['turn', 'lathe_face', 'lathe_bore', 'groove', 'part_off', 'lathe_thread', 'chamfer', 'radius']

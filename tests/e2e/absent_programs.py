@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Each program and module of LinuxCNC 2.9 that is not here says so when a configuration calls it, and what to do instead.
+"""Each program and module of LinuxCNC 2.9 that we do not have reports this when a configuration calls it, with a replacement.
 
 usage: absent_programs.py BIN_FOLDER MODULE_FOLDER
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`millwright run --certificate`: the file and the table say what the commanded motion of a run did.
+"""`millwright run --certificate`: the file and the table agree with the commanded motion of a run.
 
 usage: certificate.py MILLWRIGHT SOURCE_FOLDER
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""gs2_vfd and vfdb_vfd against drives that are written here: registers on a pseudo-terminal, and a motor behind them.
+"""gs2_vfd and vfdb_vfd against drives that this file simulates: registers on a pseudo-terminal, and a motor behind them.
 
 usage: drives.py BIN_FOLDER
 """

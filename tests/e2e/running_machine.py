@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`millwright start` keeps a machine up; `millwright run --realtime` is a client of it (D3, E1).
 
-Whoever is killed or stopped, each check asks both halves: is the machine safe, and does the work go on.
+Whichever process is killed or stopped, each check tests that the machine is safe and that the work continues.
 
 usage: running_machine.py MILLWRIGHT HALCMD ROOT
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What five screens, a long upload, and strangers at the port for other computers do to the server of the operator's screen (J3): how long a change takes to reach every
+"""Effects of five screens, a long upload, and strangers at the port for other computers on the server of the operator's screen (J3): how long a change takes to reach every
 screen, the server's share of a core, and a jog that is held during an upload: it does not stop, and its renewals are not held up.
 
 usage: screen_load.py MILLWRIGHT HALCMD ROOT [SECONDS] [UPLOAD_MB]

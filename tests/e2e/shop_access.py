@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The access list of docs/integrator/shop.md at a mosquitto broker: who receives what each user publishes.
+"""The access list of docs/integrator/shop.md at a mosquitto broker: the receivers of the messages that each user publishes.
 
 usage: shop_access.py ROOT
 """

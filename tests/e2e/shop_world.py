@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the checks of `millwright shop` share: a private PostgreSQL in a temporary folder (Unix socket only, an ordinary user), and the
+"""Common parts of the checks of `millwright shop`: a private PostgreSQL in a temporary folder (Unix socket only, an ordinary user), and the
 collector."""
 import os
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The examples of kinematics, built by halcompile, drive machines in virtual time: one that is a machine's own, and one
+"""The examples of kinematics, built by halcompile, drive machines in virtual time: one for a single machine, and one
 that is the third type of a switchable module.
 
 usage: user_kinematics.py BIN_FOLDER SOURCE_FOLDER

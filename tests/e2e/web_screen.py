@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`millwright ui` serves a machine that `millwright start` keeps up, as a browser uses it (J3): switch on, home, jog, stop, load,
-path, run, abort, messages; whoever is killed, the other side says so and goes on.
+path, run, abort, messages; whichever side is killed, the other side reports it and continues.
 
 usage: web_screen.py MILLWRIGHT HALCMD ROOT
 """

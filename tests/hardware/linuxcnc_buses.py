@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares our hm2_spi, hm2_7i90, hm2_7i43 and hm2_pci with LinuxCNC's: pins and parameters, and what a cycle sends.
+"""Compares our hm2_spi, hm2_7i90, hm2_7i43 and hm2_pci with LinuxCNC's: pins, parameters, and the data that a cycle sends.
 
 usage: linuxcnc_buses.py HALRUN MODELS_FOLDER (as root)
 Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. bus_shim.c answers instead of ports and devices; a folder that is

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lets mesaflash, which other people wrote, report the simulated boards; its report must agree with the model files.
+"""Lets mesaflash, a third-party program, report the simulated boards; its report must agree with the model files.
 
 usage: mesaflash_board.py HM2_BOARD MODELS_FOLDER
 Exit status: 0 agrees, 1 differs, 77 skipped (mesaflash is not installed). Needs no privileges.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A mill in virtual time whose journal lies on a disk that loses what was not synced: runs a program, loses
-// its power, comes up again.
+// A mill in virtual time whose journal lies on a disk that loses unsynced data: runs a program, loses its
+// power, starts again.
 #pragma once
 
 #include <cstdint>

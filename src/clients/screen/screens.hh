@@ -27,7 +27,7 @@ struct ScreensSetup {
     std::int64_t status_period_ns = 50000000;
 };
 
-/// One thread; the caller passes the time, which is monotonic.
+/// All methods are called by one thread, which passes the monotonic time.
 class Screens {
   public:
     /// Interval of checks for a machine, and whether it is alive.

@@ -122,7 +122,7 @@ Result<> TaskSide::run_hal_files(const MachineOptions &options) {
     };
     auto status = setup.run();
     if (!status.has_value() && options.kept_going) {
-        status = {};  // reported
+        status = {};  // the error is already reported
     }
     if (status.has_value()) {
         parts_.reader.report_unknown(options.strict);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What an attack is, and the table of all of them. An attack is a function of a scene and a random number generator."""
+"""The definition of an attack, and the table of all attacks. An attack is a function of a scene and a random number generator."""
 import dataclasses
 import json
 import os

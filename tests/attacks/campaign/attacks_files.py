@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Files and disks: paths that are not files, a disk that is full or slow, folders and files that go away or become something else."""
+"""Files and disks: paths that are not files, a disk that is full or slow, folders and files that are removed or replaced."""
 import contextlib
 import os
 import pathlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Clients of the web server, of NML and of linuxcncrsh that send rubbish, never read, hang up, or ask for endless work; half of the web
+"""Clients of the web server, of NML and of linuxcncrsh that send garbage, never read, disconnect, or request endless work; half of the web
 clients belong to another user. None of them may stop a machine."""
 import base64
 import contextlib

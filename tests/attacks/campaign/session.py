@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A machine that serves seeds for as long as it is whole. Prints a line of JSON for each seed, and one for the end of the machine.
+"""A machine that runs seeds as long as it is intact. Prints a line of JSON for each seed, and one for the end of the machine.
 
 usage: session.py BIN_FOLDER ROOT [--self-test] SEED...
 """

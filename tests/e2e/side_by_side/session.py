@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The display of a small simulated machine: it does the session $SESSION and writes what it sees to the file $FACTS, a fact a
+"""The display of a small simulated machine: it runs the session $SESSION and writes its observations to the file $FACTS, one fact per
 line. It runs on Millwright and on LinuxCNC 2.9 (see ../side_by_side.py).
 """
 import os
