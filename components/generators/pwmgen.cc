@@ -31,7 +31,7 @@ struct PwmChannel {
     InOut<double> max_dc, min_dc, scale, offset, pwm_freq;
     InOut<bool> dither;
     pwm::Generator generator;
-    bool isEnabled = false;  // as of the last update
+    bool isEnabled = false;  // value at the last update
     bool negative = false;
 
     void declare(Declare &d) noexcept;

@@ -23,7 +23,7 @@ struct DrivenSpindleTraits {
     int counts = 4096;           ///< of the encoder per revolution
     double uneven = 0.1;         ///< error of the position of a line, as a fraction of their distance
     double eccentric = 2e-5;     ///< error over one revolution [rev]
-    double jitter_s = 10e-6;     ///< of the time of reading
+    double jitter_s = 10e-6;     ///< error of the time of reading
 };
 
 class DrivenSpindle {

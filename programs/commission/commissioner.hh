@@ -29,7 +29,7 @@ struct CommissionSetup {
     std::function<std::unique_ptr<commissioning::Bench>(commissioning::Bench &)> wrap;
 };
 
-/// One thread.
+/// All calls come from one thread.
 class Commissioner {
   public:
     static Result<std::unique_ptr<Commissioner>> open(CommissionSetup setup);

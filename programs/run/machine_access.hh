@@ -11,7 +11,7 @@
 
 namespace mw::programs {
 
-/// One thread.
+/// All calls come from one thread.
 class MachineAccess {
   public:
     virtual ~MachineAccess() = default;

@@ -13,7 +13,7 @@
 
 namespace mw::programs {
 
-/// One thread. During its lifetime it is the only listener of the machine's moves.
+/// All calls come from one thread. During its lifetime it is the only listener of the machine's moves.
 class Recorder {
   public:
     Recorder(machine::Machine &machine, const machine::MachineConfig &config);

@@ -20,7 +20,7 @@
 
 namespace mw::programs {
 
-/// Runs no Python and reads no HAL values. One thread.
+/// Runs no Python and reads no HAL values. All calls come from one thread.
 class PathReaders {
   public:
     /// Maximum number of programs read at a time: total, per client, and for the role VIEW per client and

@@ -12,7 +12,7 @@
 
 namespace mw::programs {
 
-/// One thread. The display does not outlive the process that started it.
+/// All calls come from one thread. The display does not outlive the process that started it.
 class DisplayProgram {
   public:
     /// The command line of the display: the program, searched beside the INI file and in PATH, then "-ini",

@@ -22,7 +22,7 @@ struct StartSettings {
     machine::MachineOptions options;
 };
 
-/// One thread. Everything that it has started has ended when run() returns.
+/// All calls come from one thread. Everything that it has started has ended when run() returns.
 class MachineStart {
   public:
     MachineStart(StartSettings settings, machine::LoadedConfig &loaded, diagnostics::Sink &sink);

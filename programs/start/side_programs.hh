@@ -11,7 +11,7 @@
 
 namespace mw::programs {
 
-/// One thread.
+/// All calls come from one thread.
 class SidePrograms {
   public:
     /// `commands` as in the INI file; they are started at `start_ns`.

@@ -34,7 +34,7 @@ struct JointDesign {
     double counts_per_unit = 1e4;
     double index_spacing = 0;
     double index_at = 0;                     ///< position of the joint at one of the marks
-    double bounce_s = 0, hysteresis = 0.02;  ///< of the home switch
+    double bounce_s = 0, hysteresis = 0.02;  ///< bounce time and hysteresis of the home switch
     double home_switch_at = 0;               ///< closed at and below this position
     plants::AxisSettings drive;
 

@@ -116,7 +116,7 @@ class Session {
     std::vector<JointSample> led_;     ///< joints at the end of path_
     double led_s_ = 0;                 ///< time in which joints aligned with the axes before the first move
     std::vector<double> turns_, rpm_;  ///< of the spindle, with path_
-    std::vector<std::string> told_;    ///< by the program
+    std::vector<std::string> told_;    ///< messages of the program
     std::map<int, double> beyond_walls_;  ///< maximum travel of the probe past its walls, by axis
 };
 

@@ -419,7 +419,7 @@ class Session {
     int failed_run_ = 0, resting_cycles_ = 0, cleared_cycles_ = 0;
     std::int64_t frame_counts_ = 0;
     bool frame_known_ = true;
-    mesa::PositionLoss loss_ = mesa::PositionLoss::NONE;  ///< of this cycle
+    mesa::PositionLoss loss_ = mesa::PositionLoss::NONE;  ///< loss in this cycle
     bool restart_untold_ = false, isFollowed_ = false;
 };
 

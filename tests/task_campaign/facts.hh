@@ -44,10 +44,10 @@ struct Doings {
     int in_spindle = 0;
     std::vector<Tool> tools;
     bool isRandom = false;
-    int direction = 0;  ///< of the spindle
+    int direction = 0;  ///< direction of the spindle
     double turning_rpm = 0;
     bool isMist = false, isFlood = false;
-    Place at{};  ///< of the axes
+    Place at{};  ///< positions of the axes
     bool operator==(const Doings &) const = default;
 
     double z_of(int tool) const;

@@ -32,7 +32,8 @@ struct Change {
 /// Deadbands by the names of rows, which replace those of the table.
 using Deadbands = std::map<std::string, double, std::less<>>;
 
-/// One thread. Reports a value when it differs from the last reported value by at least its deadband.
+/// All calls come from one thread. Reports a value when it differs from the last reported value by at least
+/// its deadband.
 class Readings {
   public:
     explicit Readings(Deadbands deadbands = {}) : deadbands_(std::move(deadbands)) {}

@@ -20,8 +20,8 @@ struct JogTarget {
     bool operator==(const JogTarget &) const = default;
 };
 
-/// One thread. Continuous jogs have a lease that keep_jogging() renews. They end when this program hangs or
-/// dies, and when the object is destroyed.
+/// All calls come from one thread. Continuous jogs have a lease that keep_jogging() renews. They end when
+/// this program hangs or dies, and when the object is destroyed.
 class Commander {
   public:
     explicit Commander(Joining joining) : joining_(std::move(joining)) {}

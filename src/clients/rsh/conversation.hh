@@ -7,7 +7,7 @@
 
 namespace mw::rsh {
 
-/// One thread.
+/// All calls come from one thread.
 class Conversation {
   public:
     virtual ~Conversation() = default;

@@ -11,7 +11,7 @@ namespace mw::rsh {
 /// Maximum length of a line. [bytes]
 inline constexpr std::size_t MAX_LINE = 4096;
 
-/// One thread. Lines end with CR, LF or NUL; empty lines are ignored.
+/// All calls come from one thread. Lines end with CR, LF or NUL; empty lines are ignored.
 class LineInput {
   public:
     struct Line {

@@ -18,7 +18,7 @@ struct ServerSettings {
     int max_sessions = -1;    ///< -1: unlimited
 };
 
-/// One thread. TCP keep-alive ends connections of clients that have disappeared.
+/// All calls come from one thread. TCP keep-alive ends connections of clients that have disappeared.
 class Server {
   public:
     class Impl;  ///< defined in server.cc

@@ -16,8 +16,8 @@
 
 namespace mw::rsh {
 
-/// One thread. A line is read after the previous line has been answered. Jogs of a connection stop when it
-/// ends.
+/// All calls come from one thread. A line is read after the previous line has been answered. Jogs of a
+/// connection stop when it ends.
 class Session final : public Conversation {
   public:
     /// The arguments must outlive the session.

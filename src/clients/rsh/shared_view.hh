@@ -16,7 +16,7 @@ namespace mw::rsh {
 /// Position of a connection in the lines, for each type.
 using ReadUpTo = std::array<std::uint64_t, 3>;
 
-/// One thread.
+/// All calls come from one thread.
 class SharedView {
   public:
     explicit SharedView(client::Viewer viewer) : viewer_(std::move(viewer)) {}

@@ -22,7 +22,7 @@ struct Job {
     int tool = 0;                                      ///< 0: the tool in the spindle
 };
 
-/// One thread.
+/// All calls come from one thread.
 class Queue {
   public:
     static constexpr std::size_t MAX_JOBS = 1000;

@@ -13,9 +13,9 @@ namespace mw::schedule {
 
 enum class QueueMode { STOP, RUN, PAUSE, ERROR };
 
-/// One thread. A program is removed from the queue after it has ended without error. If it fails or is
-/// aborted it remains, and the queue is in ERROR until it is stopped or run again. So no program follows a
-/// failed one.
+/// All calls come from one thread. A program is removed from the queue after it has ended without error. If
+/// it fails or is aborted it remains, and the queue is in ERROR until it is stopped or run again. So no
+/// program follows a failed one.
 class Scheduler {
   public:
     /// `folder` is for programs whose name is not a path.

@@ -31,8 +31,8 @@ struct Shared {
     Scheduler &scheduler;
 };
 
-/// One thread. Programs that a connection has started continue when it ends, because the queue belongs to the
-/// server.
+/// All calls come from one thread. Programs that a connection has started continue when it ends, because the
+/// queue belongs to the server.
 class Session final : public rsh::Conversation {
   public:
     explicit Session(const Shared &shared) : shared_(shared) {}

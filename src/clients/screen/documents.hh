@@ -52,7 +52,7 @@ std::string files_document(std::span<const FileFacts> files);
 
 /// {"ping": 12.5}
 struct Ping {
-    std::string number;  ///< as received
+    std::string number;  ///< the number of the ping as text, unchanged
 };
 /// {"id": 7, "command": {...}}
 struct Ask {

@@ -17,7 +17,7 @@
 
 namespace mw::screen {
 
-/// Arcs are converted to chords. One thread.
+/// Arcs are converted to chords. All calls come from one thread.
 class PathChunks {
   public:
     /// Maximum distance of chords from their arc. [mm]

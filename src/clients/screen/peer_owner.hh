@@ -30,7 +30,7 @@ enum class PeerOwner : std::uint8_t {
 };
 
 /// Asks the kernel through NETLINK_SOCK_DIAG. Opens its descriptor only once, so a process without a free
-/// descriptor can ask, too. One thread.
+/// descriptor can ask, too. All calls come from one thread.
 class SocketFinder {
   public:
     SocketFinder();

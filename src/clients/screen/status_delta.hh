@@ -9,7 +9,7 @@
 
 namespace mw::screen {
 
-/// For one browser. One thread.
+/// For one browser. All calls come from one thread.
 class StatusDelta {
   public:
     /// The complete status as JSON; later changes are relative to it.

@@ -30,7 +30,7 @@ struct TimeSum {
     std::vector<SlowSpot> slowest;
 };
 
-/// One thread.
+/// All calls come from one thread.
 class TimeChunks {
   public:
     static constexpr std::size_t MOVES_PER_CHUNK = 16384;

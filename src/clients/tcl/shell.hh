@@ -19,7 +19,7 @@ namespace mw::tcl {
 
 using rsh::Words;
 
-/// One thread. Its questions and orders are those of linuxcncrsh, whose tables it uses.
+/// All calls come from one thread. Its questions and orders are those of linuxcncrsh, whose tables it uses.
 class Shell {
   public:
     /// `viewer` and `joining` are for the machine; `ini` is its INI file.

@@ -88,7 +88,7 @@ struct PreviewOptions {
 enum class PreviewEnd { DONE, FAILED, CANCELLED };
 
 /// Interprets one program. Memory is limited to one batch and the interpreter (gcode/README.md). The listener
-/// may be slow. One thread.
+/// may be slow. All calls come from one thread.
 class Preview {
   public:
     struct Listener {

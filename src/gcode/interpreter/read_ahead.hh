@@ -19,7 +19,7 @@ class Flow;
 }  // namespace detail
 
 /// Stores the state at the executed step, and the changes of each later step. Step numbers never decrease.
-/// One thread.
+/// All calls come from one thread.
 class ReadAhead {
   public:
     /// Both objects must outlive the read-ahead.

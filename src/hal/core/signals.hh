@@ -49,7 +49,8 @@ class Signals {
     /// An error includes the most similar name.
     Result<SignalInfo> find(std::string_view name) const;
     Result<Value> get(std::string_view name) const;
-    /// As sets: rejected while the signal has a writer. The value of a port signal is the size of its buffer.
+    /// Like the command sets: rejected while the signal has a writer. The value of a port signal is the size
+    /// of its buffer.
     Result<> set(std::string_view name, const Value &value);
     Result<> set(std::string_view name, std::string_view text);
 

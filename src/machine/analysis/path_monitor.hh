@@ -20,7 +20,7 @@ struct RunFigures {
     std::array<double, MAX_AXES> peak_velocity{}, peak_acceleration{};  ///< [units/s], [units/s2]
 };
 
-/// One thread. Moves arrive in the order of the planner, samples in the order of time.
+/// All calls come from one thread. Moves arrive in the order of the planner, samples in the order of time.
 class PathMonitor {
   public:
     explicit PathMonitor(std::int64_t period_ns) : period_s_(static_cast<double>(period_ns) * 1e-9) {}

@@ -48,7 +48,7 @@ struct PathPiece {
 };
 
 /// Pieces have consecutive numbers. They are created when needed, because an arc may have any number of
-/// revolutions. One thread.
+/// revolutions. All calls come from one thread.
 class PathPieces {
   public:
     void add(const ProgrammedMove &move);

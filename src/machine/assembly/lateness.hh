@@ -21,7 +21,7 @@ std::optional<std::string> why_late(const ThreadTimes &before, const ThreadTimes
 
 inline constexpr std::int64_t LATE_NS = 250000000;
 
-/// One thread.
+/// All calls come from one thread.
 class Lateness {
   public:
     Lateness() = default;

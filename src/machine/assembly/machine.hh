@@ -52,7 +52,8 @@ struct RealtimeFigures {
     std::int64_t max_latency_ns = 0;
 };
 
-/// One thread. The destructor stops everything: motion first, then the parts in reverse order of their start.
+/// All calls come from one thread. The destructor stops everything: motion first, then the parts in reverse
+/// order of their start.
 class Machine {
   public:
     virtual ~Machine() = default;

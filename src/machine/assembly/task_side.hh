@@ -22,8 +22,8 @@
 
 namespace mw::machine {
 
-/// One thread. After start() the machine's threads run, and task accepts commands once the configuration is
-/// complete.
+/// All calls come from one thread. After start() the machine's threads run, and task accepts commands once
+/// the configuration is complete.
 class TaskSide final : private task::IoPins {
   public:
     /// `programs` starts the programs of HAL files and must outlive this object; null: none are started.

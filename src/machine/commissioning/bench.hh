@@ -20,7 +20,7 @@ struct JointReading {
     bool isDriveFaulted = false, isFollowingErrorTripped = false;
 };
 
-/// One thread. Requests are asynchronous; readings of later cycles show their effect.
+/// All calls come from one thread. Requests are asynchronous; readings of later cycles show their effect.
 class Bench {
   public:
     virtual ~Bench() = default;

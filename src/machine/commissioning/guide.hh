@@ -20,8 +20,8 @@ struct Step {
 /// The steps for a machine, in their order.
 std::vector<Step> steps_of(const setup::Plan &plan);
 
-/// One thread. The machine's side calls attach() with each machine that it has started, then cycle() in each
-/// task cycle until isRestartWanted() or isOver().
+/// All calls come from one thread. The machine's side calls attach() with each machine that it has started,
+/// then cycle() in each task cycle until isRestartWanted() or isOver().
 class Guide {
   public:
     explicit Guide(setup::Answers answers);

@@ -18,8 +18,8 @@ namespace mw::commissioning {
 /// time, the machine is switched off.
 std::vector<std::string> watchdog_commands();
 
-/// One thread. Call update() in each task cycle before the guide. The machine must have run
-/// watchdog_commands().
+/// All calls come from one thread. Call update() in each task cycle before the guide. The machine must have
+/// run watchdog_commands().
 class LiveBench final : public Bench {
   public:
     LiveBench(client::Client &client, hal::Instance &hal, int joints);

@@ -30,7 +30,7 @@ struct Motion {
 /// Called in each cycle during a motion.
 using Watch = std::function<void(const JointReading &)>;
 
-/// One thread. Answers of the operator are valid for the current prompt only.
+/// All calls come from one thread. Answers of the operator are valid for the current prompt only.
 class Stage : public CurrentAnswers {
   public:
     using CurrentAnswers::CurrentAnswers;

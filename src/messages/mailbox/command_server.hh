@@ -13,7 +13,7 @@
 
 namespace mw::mailbox {
 
-/// One thread. Never waits for a client. All data from clients is checked before use.
+/// All calls come from one thread. Never waits for a client. All data from clients is checked before use.
 class CommandServer {
   public:
     struct Delivery {

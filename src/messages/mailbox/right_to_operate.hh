@@ -13,7 +13,7 @@ namespace mw::mailbox {
 /// Unique during the lifetime of a mailbox, never 0.
 using ClientId = std::uint32_t;
 
-/// A lease with an end. The caller passes the time. One thread.
+/// A lease with an end. The caller passes the time. All calls come from one thread.
 class RightToOperate {
   public:
     /// Claims the right, or renews it for `lease_s` from now. An error while another client has it.

@@ -57,7 +57,7 @@ class IoPorts final : public Module {
     std::vector<UsedPin> used_;
     std::vector<Port> ports_;
     View cycle_, fast_;
-    std::vector<PortWords> sent_;  ///< by write_immediately()
+    std::vector<PortWords> sent_;  ///< last words sent by write_immediately()
     ReadHandle data_;
 };
 

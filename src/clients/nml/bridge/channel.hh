@@ -20,7 +20,7 @@ struct Connections {
     LocalPlaces &local;
 };
 
-/// One thread. Waits as set by the timeout in the line of the process.
+/// All calls come from one thread. Waits as set by the timeout in the line of the process.
 class Channel {
   public:
     static Result<Channel> open(const Connections &connections, const std::string &buffer);

@@ -37,9 +37,9 @@ struct Rights {
     bool mayWrite = true;
 };
 
-/// One thread. An access may wait for other users of the buffer and for free space in a queue; only wait()
-/// waits for a message. An error states what to do, or that the timeout has expired. The connection is usable
-/// after an error, unless the error reports that the buffer no longer exists.
+/// All calls come from one thread. An access may wait for other users of the buffer and for free space in a
+/// queue; only wait() waits for a message. An error states what to do, or that the timeout has expired. The
+/// connection is usable after an error, unless the error reports that the buffer no longer exists.
 class Buffer {
   public:
     Buffer(std::string name, Rights rights) : name_(std::move(name)), rights_(rights) {}

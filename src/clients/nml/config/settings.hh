@@ -27,8 +27,8 @@ enum class BufferKind : std::uint8_t {
 enum class Mutex : std::uint8_t {
     OS_SEM,         ///< a lock that the kernel releases when its holder dies
     NONE,           ///< no lock: one writer and one reader
-    NO_INTERRUPTS,  ///< not on Linux: as OS_SEM
-    NO_SWITCHING,   ///< not on Linux: as OS_SEM
+    NO_INTERRUPTS,  ///< not available on Linux; treated as OS_SEM
+    NO_SWITCHING,   ///< not available on Linux; treated as OS_SEM
     MAO,            ///< several copies of the message, so that readers never wait for the writer
 };
 

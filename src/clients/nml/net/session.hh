@@ -35,7 +35,7 @@ struct Service {
     JogOwners *jogs = nullptr;
 };
 
-/// One thread.
+/// All calls come from one thread.
 class Session {
   public:
     explicit Session(const Service &service) : service_(service) {}

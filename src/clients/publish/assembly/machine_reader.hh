@@ -13,7 +13,7 @@
 
 namespace mw::publish {
 
-/// One thread. Waits for a machine that is not running, and follows a restart.
+/// All calls come from one thread. Waits for a machine that is not running, and follows a restart.
 class MachineReader {
   public:
     /// The machine, while it runs.

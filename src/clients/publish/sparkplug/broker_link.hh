@@ -28,7 +28,7 @@ struct BarrierPassed {
 };
 using LinkEvent = std::variant<Connected, Disconnected, Publication, BarrierPassed>;
 
-/// One connection at a time. No call waits for the broker. One thread.
+/// One connection at a time. No call waits for the broker. All calls come from one thread.
 class BrokerLink {
   public:
     BrokerLink() = default;

@@ -31,7 +31,7 @@ struct NodeSettings {
 /// The reason why a name cannot be part of a topic; empty if it can.
 std::string check_topic_part(std::string_view name);
 
-/// One thread.
+/// All calls come from one thread.
 class EdgeNode {
   public:
     /// Time of day, and a monotonic time.

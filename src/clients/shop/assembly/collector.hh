@@ -25,7 +25,7 @@ struct CollectorSettings {
 
 /// Values that are not committed in the database get no receipt, and the machine sends values without a
 /// receipt again. So the collector stores nothing itself: when the store or the broker is lost it drops
-/// everything, and is offline until both are available. One thread.
+/// everything, and is offline until both are available. All calls come from one thread.
 class Collector {
   public:
     using Moment = HostApplication::Moment;

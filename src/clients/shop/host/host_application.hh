@@ -38,7 +38,7 @@ struct HostSettings {
 /// stored messages. So a host that drops everything with forget() loses nothing. From such a node only the
 /// next message in order is accepted: after a missing message the aliases of the last birth may be wrong, and
 /// the other messages are repeated after the requested birth. From a node without positions all messages are
-/// accepted. One thread.
+/// accepted. All calls come from one thread.
 class HostApplication {
   public:
     /// Time of day, and a monotonic time.

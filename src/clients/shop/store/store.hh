@@ -23,7 +23,7 @@ struct StoreSettings {
 /// Creates and updates the tables: all missing steps, or none.
 Result<> migrate(Database &database);
 
-/// One thread.
+/// All calls come from one thread.
 class Store {
   public:
     /// Connects, updates the tables, and takes the lock of the collector's name.

@@ -8,7 +8,7 @@
 namespace mw::task {
 
 /// Each command ends once: done, failed, or rejected with a reason. The table of admission rejects a command
-/// that is not possible in the state of the machine. One thread.
+/// that is not possible in the state of the machine. All calls come from one thread.
 class CommandDispatcher {
   public:
     CommandDispatcher(const RunParts &run, const Controllers &parts) : run_(run), parts_(parts) {}

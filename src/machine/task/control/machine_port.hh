@@ -15,7 +15,8 @@ namespace mw::task {
 /// The reason why a waiting command was not begun.
 inline constexpr const char *OVERTAKEN = "it came before a stop";
 
-/// Sends commands to motion, reports to clients, and provides the time of the cycle. One thread.
+/// Sends commands to motion, reports to clients, and provides the time of the cycle. All calls come from one
+/// thread.
 class MachinePort {
   public:
     MachinePort(motion::Channels &channels, mailbox::Segment &segment) : server_(segment), link_(channels) {}

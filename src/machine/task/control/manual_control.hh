@@ -15,7 +15,7 @@ inline RefusalIsFor reader_of_refusal(const JogContinuous &jog) noexcept {
     return jog.isRenewal ? RefusalIsFor::ITS_CLIENT : RefusalIsFor::EVERYBODY;
 }
 
-/// Joints are homed one request at a time. One thread.
+/// Joints are homed one request at a time. All calls come from one thread.
 class ManualControl {
   public:
     ManualControl(MachinePort &port, io::DiscreteIo &io, Sequencer &sequencer, ModeController &modes,

@@ -8,7 +8,7 @@
 namespace mw::task {
 
 /// Switching the machine off ends all work. The mode changes together with the mode of motion; after a stop
-/// it changes when the axes have stopped. One thread.
+/// it changes when the axes have stopped. All calls come from one thread.
 class ModeController {
   public:
     ModeController(MachinePort &port, io::DiscreteIo &io, WorkEnd &end, LongCalls &calls)

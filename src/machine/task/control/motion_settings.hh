@@ -14,7 +14,7 @@ namespace mw::task {
 
 using ScrewTables = std::vector<std::vector<motion::LoadCompensation>>;
 
-/// One thread.
+/// All calls come from one thread.
 class MotionSettings {
   public:
     MotionSettings(MachinePort &port, const Settings &settings)

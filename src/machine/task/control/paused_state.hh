@@ -12,7 +12,7 @@
 namespace mw::task {
 
 /// Exists from the pause of a run to its resume or end. It includes changes that the program itself makes in
-/// this time. One thread.
+/// this time. All calls come from one thread.
 class PausedState {
   public:
     explicit PausedState(const RunParts &parts) : parts_(parts) {}

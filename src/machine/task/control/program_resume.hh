@@ -15,7 +15,7 @@ namespace mw::task {
 /// A run that does not start at its first line has the phases SEARCHING (the state at its position is
 /// calculated), PROPOSED (a person confirms the approach) and READING. A paused program returns to PROPOSED
 /// when the tool was moved away, outputs were switched off or the tool was changed, and to SEARCHING when the
-/// tool table was changed. One thread.
+/// tool table was changed. All calls come from one thread.
 class ProgramResume {
   public:
     ProgramResume(const RunParts &parts, RunController &runs, WorkEnd &end, ModeController &modes)

@@ -6,7 +6,7 @@
 
 namespace mw::task {
 
-/// One status in each cycle. One thread.
+/// One status in each cycle. All calls come from one thread.
 class StatusWriter {
   public:
     StatusWriter(const RunParts &run, const Controllers &parts) : run_(run), parts_(parts) {}

@@ -6,7 +6,7 @@
 
 namespace mw::task {
 
-/// One thread.
+/// All calls come from one thread.
 class ToolTableControl {
   public:
     explicit ToolTableControl(const RunParts &parts) : parts_(parts) {}

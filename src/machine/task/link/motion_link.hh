@@ -11,7 +11,7 @@
 
 namespace mw::task {
 
-/// One thread. update() reports every rejection and failure exactly once.
+/// All calls come from one thread. update() reports every rejection and failure exactly once.
 class MotionLink {
   public:
     explicit MotionLink(motion::Channels &channels);

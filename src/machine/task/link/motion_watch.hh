@@ -6,7 +6,7 @@
 
 namespace mw::task {
 
-/// One thread.
+/// All calls come from one thread.
 class MotionWatch {
   public:
     /// Called once in each task cycle. Returns true once for each silence, to notify the operator.

@@ -42,7 +42,7 @@ struct ApproachPlan {
     std::vector<gcode::MachineCall> calls() const;
 };
 
-/// At most one proposal. One thread.
+/// At most one proposal. All calls come from one thread.
 class Approach {
   public:
     /// Its number differs from all earlier ones.

@@ -12,7 +12,7 @@
 
 namespace mw::task {
 
-/// One thread.
+/// All calls come from one thread.
 class CanonSwitch final : public gcode::MachineCanon,
                           public gcode::World,
                           public gcode::ToolSource,

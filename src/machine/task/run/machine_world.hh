@@ -9,7 +9,7 @@
 
 namespace mw::task {
 
-/// Passes the last snapshot to the interpreter. One thread.
+/// Passes the last snapshot to the interpreter. All calls come from one thread.
 class MachineWorld final : public gcode::World {
   public:
     struct Machine {

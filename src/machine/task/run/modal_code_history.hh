@@ -10,7 +10,7 @@
 
 namespace mw::task {
 
-/// One thread.
+/// All calls come from one thread.
 class ModalCodeHistory {
   public:
     /// Stores the codes after the block with this number was read. Blocks arrive in order. If a block is

@@ -9,7 +9,7 @@
 
 namespace mw::task {
 
-/// One thread.
+/// All calls come from one thread.
 class OnAbort {
   public:
     /// Empty: no command after an abort.

@@ -10,7 +10,7 @@
 namespace mw::task {
 
 /// Writes parameters in order, so that an older text never replaces a newer text. The previous content is in
-/// the .bak file. One thread.
+/// the .bak file. All calls come from one thread.
 class ParameterFile {
   public:
     /// `path` empty: parameters are only in memory. Without a writer, or with a plug-in that stores its own

@@ -25,7 +25,7 @@ class ProgramChecksum {
     std::uint64_t value_ = 0;
 };
 
-/// Checksums at the starts of blocks that are read and not done. One thread.
+/// Checksums at the starts of blocks that are read and not done. All calls come from one thread.
 class ChecksumMarks {
   public:
     /// `before`: checksum of all earlier calls.

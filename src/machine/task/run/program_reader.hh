@@ -27,8 +27,8 @@ struct KeptState {
     std::optional<gcode::MachineFrame> frame;
 };
 
-/// One thread. step(), execute(), open() and step_search() may wait for files and scripts. Meanwhile another
-/// thread may use task (LongCall); of the reader it uses only call().
+/// All calls come from one thread. step(), execute(), open() and step_search() may wait for files and
+/// scripts. Meanwhile another thread may use task (LongCall); of the reader it uses only call().
 class ProgramReader {
   public:
     struct Setup {

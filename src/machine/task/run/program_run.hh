@@ -25,7 +25,7 @@ enum class RunKind : std::uint8_t {
 
 using ProgramPath = decltype(messages::TaskStatus::program);
 
-/// One thread.
+/// All calls come from one thread.
 class ProgramRun {
   public:
     /// Rejected while a run is active. `line` is that of MDI.

@@ -51,7 +51,7 @@ enum class RunEvent : std::uint8_t {
     COUNT
 };
 
-/// Phase and hold of the run. It has no side effects. One thread.
+/// Phase and hold of the run. It has no side effects. All calls come from one thread.
 class RunState {
   public:
     /// An event that is not possible in this state changes nothing and returns the reason.

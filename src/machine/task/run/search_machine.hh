@@ -36,7 +36,7 @@ struct FoundModes {
 };
 
 /// Receives the calls of a search and answers for the machine. A value known only to the running machine
-/// makes everything after it unknown (a doubt). One thread.
+/// makes everything after it unknown (a doubt). All calls come from one thread.
 class SearchMachine final : public gcode::MachineCanon,
                             public gcode::World,
                             public gcode::ToolSource,

@@ -13,8 +13,8 @@
 
 namespace mw::task {
 
-/// One thread. Motion is changed only at standstill; a change that is delayed or not possible is reported
-/// once.
+/// All calls come from one thread. Motion is changed only at standstill; a change that is delayed or not
+/// possible is reported once.
 class PlannerMode {
   public:
     struct Hooks {

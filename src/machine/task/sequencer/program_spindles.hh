@@ -13,7 +13,7 @@
 
 namespace mw::task {
 
-/// Keeps the commands sent to motion, for calls that change a part of them. One thread.
+/// Keeps the commands sent to motion, for calls that change a part of them. All calls come from one thread.
 class ProgramSpindles {
   public:
     void set_mode(const gcode::SetSpindleMode &mode);

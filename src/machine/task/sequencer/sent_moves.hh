@@ -13,7 +13,7 @@
 
 namespace mw::task {
 
-/// One thread.
+/// All calls come from one thread.
 class SentMoves {
   public:
     /// `item` was sent as path command `id`; `position` is that of the machine, for a move that begins there.

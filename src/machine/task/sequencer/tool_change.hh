@@ -14,7 +14,7 @@
 namespace mw::task {
 
 /// The prepared tool and the tool being loaded. The table follows the changer: it changes only in the cycle
-/// in which the changer reports the tool as loaded. One thread.
+/// in which the changer reports the tool as loaded. All calls come from one thread.
 class ToolChange {
   public:
     /// `error_text` of [TASK]IO_ERROR: %d is the reason; empty: our own text.

@@ -10,7 +10,7 @@
 
 namespace mw::task {
 
-/// One thread.
+/// All calls come from one thread.
 class HomingRequest {
   public:
     /// `joint` -1: all, in sequence. An earlier request must have ended.

@@ -12,7 +12,7 @@
 namespace mw::task {
 
 /// Commands in order. While mode or state change, stops and changes of the machine's state are executed
-/// first. One thread.
+/// first. All calls come from one thread.
 class Inbox {
   public:
     void add(std::vector<mailbox::CommandServer::Delivery> deliveries);

@@ -15,7 +15,7 @@
 
 namespace mw::task {
 
-/// MDI lines in order. One thread.
+/// MDI lines in order. All calls come from one thread.
 class MdiQueue {
   public:
     struct Line {

@@ -7,7 +7,7 @@
 
 namespace mw::task {
 
-/// A run continues only in coordinated mode. One thread.
+/// A run continues only in coordinated mode. All calls come from one thread.
 class OutOfModeWatch {
   public:
     /// Called once in each cycle; true if motion has not been in that mode for too long.
@@ -17,7 +17,7 @@ class OutOfModeWatch {
     std::optional<std::int64_t> since_ns_;
 };
 
-/// A change is complete when motion has changed its mode. One thread.
+/// A change is complete when motion has changed its mode. All calls come from one thread.
 class OperatingMode {
   public:
     /// `order` has requested `motion_mode`; an earlier change must have ended. `may_move_joints`: manual mode

@@ -21,7 +21,7 @@ struct Ending {
     std::string reason;  ///< of a rejection or failure
 };
 
-/// At most one command at a time. One thread.
+/// At most one command at a time. All calls come from one thread.
 class Request {
   public:
     static constexpr std::int64_t NO_DEADLINE = std::numeric_limits<std::int64_t>::max();

@@ -53,7 +53,7 @@ TEST(WatchModel, PinsAreATreeByDots) {
     EXPECT_EQ(viewer.row().label, "out");
     EXPECT_EQ(viewer.row().depth, 2);
     EXPECT_EQ(viewer.row().extra, "==> gate");
-    viewer.press(Key::CLOSE);  // to the branch
+    viewer.press(Key::CLOSE);  // moves to the branch
     EXPECT_EQ(viewer.row().name, "and2.0");
     viewer.press(Key::CLOSE);
     EXPECT_FALSE(viewer.row().isOpen);
