@@ -25,7 +25,7 @@ std::size_t index_of(ControlAddress address) {
     return static_cast<std::size_t>(address);
 }
 
-/// The number of `size` bytes.
+/// The unsigned number in these bytes.
 std::uint64_t number_of(std::span<const std::byte> bytes) {
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < bytes.size(); ++i) {
