@@ -22,7 +22,7 @@ MAY_USE = {
     'components': ('base', 'hal', 'kinematics', 'trajectory', 'motion', 'machine/io'),
     'tests/support': ('base', 'hal', 'kinematics', 'trajectory', 'motion'),
 }
-# The folders of a room in the order in which they may use each other. '' stands for the files outside its
+# The folders of a room in the order in which they may use each other. '' means the files outside its
 # folders.
 ORDER = {
     'base': ('', 'diagnostics', 'geometry', 'language', 'options', 'ini', 'charts'),

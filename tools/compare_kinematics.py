@@ -41,7 +41,7 @@ MODELS = {
     "lineardeltakins": {"poses": [(-200, 200), (-200, 200), MM, TURN, TURN, TURN, MM, MM, MM], "size": 269},
     "rotarydeltakins": {"poses": [(-14, 14), (-14, 14), (-23, -1), TURN, TURN, TURN, MM, MM, MM], "size": 14},
     "5axiskins": {"joints": [MM, MM, MM, TILT, TURN, MM], "size": 300, "pins": {"5axiskins.pivot-length": 180.5}},
-    # Its forward kinematics does not return to the pose of its own inverse, so the inverse is compared.
+    # Its forward kinematics does not return to the pose of its inverse, so the inverse is compared.
     "maxkins": {"poses": [MM, MM, MM, TURN, TILT, TURN, MM, MM, MM], "size": 300, "is_inverse_only": True,
                 "pins": {"maxkins.pivot-length": 120}},
     "xyzac-trt-kins": {"joints": [MM, MM, MM, TILT, TURN], "size": 300, "offsets": True},

@@ -43,7 +43,7 @@ class Seqlock {
         sequence_.store(seq + 2, std::memory_order_release);
     }
 
-    /// Changes with each write. Data that was read at the current version is up to date. [any thread]
+    /// Changes with each write. Data that was read at the current version is valid. [any thread]
     std::uint32_t version() const noexcept { return sequence_.load(std::memory_order_acquire); }
 
     /// Tries to read once. Returns false during a write. [any thread]

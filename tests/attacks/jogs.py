@@ -37,7 +37,7 @@ def isMoving(machine):
 
 
 def to_start(machine):
-    """Moves X to a position with room for every jog of this test."""
+    """Moves X to a position with clearance for every jog of this test."""
     machine.command.jog(machine.linuxcnc.JOG_STOP, 0, 0)
     machine.command.wait_complete()
     machine.until(lambda: not isMoving(machine), 2)

@@ -15,7 +15,7 @@ from web_screen import Screen  # noqa: E402  pylint: disable=wrong-import-positi
 
 
 class Reader(Screen):
-    """A screen, and the time at which each message appeared by the clock of this computer."""
+    """A screen, and the time at which each message appeared on this computer."""
 
     def __init__(self, port):
         self.appeared = {}

@@ -101,7 +101,7 @@ void Judge::check_places(const Sample &s) {
             fail("place",
                  fmt::format("joint {} is {:.6g} off, and was {:.6g} off before", j, off, judge.place));
         }
-        // If the switch closes soon after a reversal, the backlash is only partly taken up.
+        // If the switch closes soon after a reversal, the backlash is only partly compensated.
         const double late = d.play + (design_.isJerkLimited ? d.screw_error : 0);
         const bool isMeasured = d.home_kind != HomeKind::IMMEDIATE;
         if (isMeasured && std::abs(off) > allowed + late + found_within(d, period_)) {

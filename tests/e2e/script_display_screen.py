@@ -269,7 +269,7 @@ def main():
     if what == 'killed':
         os.kill(os.getpid(), signal.SIGKILL)
     if what == 'kill-launcher':
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a display that refuses to end
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a display that does not end
         os.kill(os.getppid(), signal.SIGTERM)
         time.sleep(60)
     if what == 'kill-realtime':

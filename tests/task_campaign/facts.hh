@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The meaning of lines of G-code by the manual, as far as a judge needs it. Independent of the interpreter,
-// of task and of messages.
+// The meaning of lines of G-code by the manual, limited to the needs of a judge. Independent of the
+// interpreter, of task and of messages.
 #pragma once
 
 #include <array>

@@ -57,7 +57,7 @@ struct Trouble {
     Upset what = Upset::PAUSE;
     int at_ms = 0, length_ms = 50;
     int client = 0;
-    std::uint64_t seed = 0;  ///< of its own choice
+    std::uint64_t seed = 0;  ///< chosen by itself
 };
 
 struct Act {

@@ -28,7 +28,7 @@ enum class Works : std::uint8_t {
 
 /// Executes jobs in the order of the calls, and syncs each part before the next. A new progress replaces a
 /// waiting one; a new text of a file replaces its waiting text. One thread calls the methods. A method waits
-/// for the disk only if its comment says so.
+/// for the disk only if its comment states this.
 class Writer {
   public:
     /// `path` of the journal; empty: runs are not journalled.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Declaration of a message, written once beside its struct. Codecs, checks, lookups and the reference page
-// read these tables at run time, so a message needs no code of its own.
+// read these tables at run time, so a message needs no separate code.
 #pragma once
 
 #include <array>

@@ -77,7 +77,7 @@ class ShuttleTest(unittest.TestCase):
         self.assertIn('shuttle.0 (wheel) is back', err)
 
     def test_garbage_moves_nothing(self):
-        # A wheel beyond its end, a truncated report: the counts do not move or jump.
+        # A wheel outside its range, a truncated report: the counts do not move or jump.
         for garbage in ('0809001000', '8009000000', '07ff'):
             _, err = self.drive('out = pipe()\nsend(out, "0005000000"); wait((0, 0, []))\nsend(out, "f907001000"); wait((2, -7, [0]))\n'
                                 f'send(out, "{garbage}"); wait((2, 0, []))\nsend(out, "{garbage}")\ntime.sleep(0.05); wait((2, 0, []))\n'

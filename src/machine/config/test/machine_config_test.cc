@@ -163,7 +163,7 @@ TEST(MachineConfig, ProbesInJogsAndExternalOffsetsAreSettingsOfMotion) {
 }
 
 TEST(MachineConfig, SpeedOfRotaryAxesIsLimitedWhateverTheSpeedOfTheFirstJoint) {
-    // Without trivial kinematics an axis has no joint of its own, so slow joints must not remove the limit.
+    // Without trivial kinematics no joint belongs to one axis, so slow joints must not remove the limit.
     const Config c("[TRAJ]\nCOORDINATES = X Y Z A C\nMAX_ANGULAR_VELOCITY = 5\n[KINS]\n"
                    "KINEMATICS = tablekins\nJOINTS = 5\n[HAL]\nHALFILE = LIB:core_sim.hal\n"
                    "[JOINT_0]\nMAX_VELOCITY = 1\n[JOINT_3]\nMAX_VELOCITY = 4\n[JOINT_4]\nMAX_VELOCITY = 4\n");

@@ -14,7 +14,7 @@
 namespace mw::task {
 
 /// Runs one program at a time, in a separate process group. One thread calls the methods. A method blocks
-/// only if its comment says so.
+/// only if its comment states this.
 class UserProgram {
   public:
     enum class Waits : std::uint8_t {
