@@ -267,7 +267,7 @@ Result<> run(const Setup &setup, const volatile std::sig_atomic_t &stop) {
     const int id = hal_init(setup.component.c_str());
     if (id < 0) {
         return fail("HAL does not accept component " + setup.component, {},
-                    "does one with this name exist already?");
+                    "a component with this name may already exist");
     }
     std::vector<LinkWork> links;
     links.reserve(setup.links.size());

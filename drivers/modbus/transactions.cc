@@ -132,7 +132,7 @@ void read_serial(const Section &section, Link &link) {
                                          {link.bits == 0, "SERIAL_BITS"},
                                          {link.stop == 0, "SERIAL_STOP"}}) {
         if (isMissing && !section.has(key)) {
-            section.missing(key, "a serial link needs it");
+            section.missing(key, "required for a serial line");
         }
     }
 }
@@ -157,7 +157,7 @@ Link read_link(const Section &section, const Link *before) {
     section.text("TCP_IP", link.address);
     section.number("TCP_PORT", link.port, 1, MAX_ADDRESS);
     if (link.address.empty()) {
-        section.missing("TCP_IP", "a link by TCP needs it");
+        section.missing("TCP_IP", "required for a TCP connection");
     }
     return link;
 }
@@ -197,14 +197,14 @@ void read_elements(const Section &section, Transaction &one) {
         section.wrong("FIRST_ELEMENT", "fewer elements, up to address 65535,");
     }
     if (std::set<std::string>(one.elements.begin(), one.elements.end()).size() != one.elements.size()) {
-        section.wrong("PIN_NAMES", "each name once");
+        section.wrong("PIN_NAMES", "a list without repeated names");
     }
 }
 
 void read_function(const Section &section, Transaction &one) {
     const auto *code = section.find("MB_TX_CODE");
     if (code == nullptr) {
-        section.missing("MB_TX_CODE", "it sets what is read or written");
+        section.missing("MB_TX_CODE", "it is the Modbus function");
         return;
     }
     for (const auto &[name, function] : FUNCTIONS) {
@@ -230,7 +230,7 @@ Transaction read_transaction(const Section &section, const Transaction *before, 
     read_function(section, one);
     section.number("MB_SLAVE_ID", one.slave, 0, 247);
     if (before == nullptr && !section.has("MB_SLAVE_ID")) {
-        section.missing("MB_SLAVE_ID", "the number of the device");
+        section.missing("MB_SLAVE_ID", "the slave address of the device");
     }
     section.number("FIRST_ELEMENT", one.first_element, 0, MAX_ADDRESS);
     if (!section.has("FIRST_ELEMENT")) {
@@ -288,7 +288,8 @@ Setup read_setup(const ini::IniFile &file, diagnostics::Sink &sink) {
             setup.links.push_back(link);
         }
         if (!names.insert(one.name).second) {
-            sink.error("two transactions have the name " + one.name + ", and so their pins", section.place());
+            sink.error("two transactions have the name " + one.name + ": their pins have the same names",
+                       section.place());
         }
         setup.transactions.push_back(std::move(one));
     }

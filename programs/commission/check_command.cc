@@ -52,19 +52,15 @@ struct CheckWords {
     options::CommandLine line() {
         options::CommandLine line(
             std::string("millwright commission ") + command + " FOLDER [options]",
-            "Starts the machine of a folder and leads through its steps: each says "
-            "what to do, names the hazards, "
-            "and moves one\naxis slowly, only while the space bar is pressed. Steps that "
-            "are done are not repeated. "
-            "Corrected values are written\ninto the machine's files.\nA script writes "
-            "lines instead: confirm, hold "
-            "SECONDS, number VALUE, choice TEXT, cannot.\n");
-        line.flag("--simulate", "in virtual time, for a machine with a simulated board", isSimulated);
-        line.flag("--fast", "with --simulate: do not wait for the time of the clock on the wall", isFast);
-        line.flag("--all", "the steps of check and of tune", areAll);
-        line.flag("--messages", "for a screen: lines of JSON instead of texts (docs/reference/api.md)",
-                  isScreen);
-        line.flag("--again", "do all steps again", isRepeated);
+            "Starts the machine in FOLDER and guides you through the steps. Each step shows instructions and "
+            "hazards, and moves one\naxis slowly, only while the space bar is pressed. Completed steps are "
+            "not repeated. Corrected values are written\ninto the machine's files.\nA script writes lines "
+            "instead: confirm, hold SECONDS, number VALUE, choice TEXT, cannot.\n");
+        line.flag("--simulate", "run in virtual time, for a machine with a simulated board", isSimulated);
+        line.flag("--fast", "with --simulate: run faster than real time", isFast);
+        line.flag("--all", "the steps of check and tune", areAll);
+        line.flag("--messages", "for a screen: JSON lines instead of text (docs/reference/api.md)", isScreen);
+        line.flag("--again", "repeat all steps", isRepeated);
         line.rest(rest);
         line.footer("exit status: 0 the steps are done without a fault, 1 a fault, 2 wrong usage\n");
         return line;
@@ -184,11 +180,10 @@ struct ReportWords {
     options::Words rest;
 
     options::CommandLine line() {
-        options::CommandLine line(
-            "millwright commission report FOLDER [options]",
-            "Prints what commissioning has found: values, dates, versions, a checklist for "
-            "acceptance and a field for the signature.\n");
-        line.text("--html", "FILE", "write a page for the printer instead", html);
+        options::CommandLine line("millwright commission report FOLDER [options]",
+                                  "Prints the commissioning report: values, dates, versions, an acceptance "
+                                  "checklist and a signature field.\n");
+        line.text("--html", "FILE", "write a printable HTML page instead", html);
         line.rest(rest);
         line.footer("exit status: 0 done, 1 rejected, 2 wrong usage\n");
         return line;

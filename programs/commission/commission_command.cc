@@ -19,14 +19,14 @@ struct Part {
 };
 
 constexpr std::array PARTS{
-    Part{"find", commission::command_find, "boards, ports and pendants at this computer"},
+    Part{"find", commission::command_find, "lists boards, ports and pendants of this computer"},
     Part{"describe", commission::command_describe,
-         "the questions about a machine, with the reason of each preset"},
-    Part{"write", commission::command_write, "writes a machine, or writes it again with other answers"},
+         "prints the questions about a machine, with the reason of each preset"},
+    Part{"write", commission::command_write, "writes the files of a machine, also again with other answers"},
     Part{"check", commission::command_check,
-         "the steps at the machine: inputs, directions, scales, homing, spindle"},
-    Part{"tune", commission::command_tune, "the control loops of servos, maximum speeds and accelerations"},
-    Part{"report", commission::command_report, "what was found, for acceptance"},
+         "checks inputs, directions, scales, homing and spindle at the machine"},
+    Part{"tune", commission::command_tune, "tunes servo loops, maximum speeds and accelerations"},
+    Part{"report", commission::command_report, "prints the report for acceptance"},
 };
 
 void show_help() {
@@ -54,7 +54,7 @@ int command_commission(const std::vector<std::string> &words) {
         names.emplace_back(part.name);
     }
     const std::string near = nearest_name(words[0], names);
-    fmt::print(stderr, "millwright commission: '{}' is no part{}\n", printable(words[0]),
+    fmt::print(stderr, "millwright commission: unknown part '{}'{}\n", printable(words[0]),
                near.empty() ? "" : "; did you mean " + near + "?");
     return 2;
 }

@@ -32,7 +32,7 @@ struct FindWords {
             "millwright commission find [ADDRESS ...] [options]",
             "Lists the boards and ports at this computer: Mesa boards on the network and on "
             "PCI, parallel ports, serial\nadapters and input devices. It changes nothing.\n");
-        line.text("--root", "FOLDER", "where /sys and /dev are (/)", root);
+        line.text("--root", "FOLDER", "folder of /sys and /dev (/)", root);
         line.rest(addresses);
         line.footer("exit status: 0 something was found, 1 nothing, 2 wrong usage\n");
         return line;

@@ -94,7 +94,7 @@ void OperatorLine::take(commissioning::Guide &guide, double now_s, const std::st
                .number = verb == "number" ? number.value_or(0) : *parse_double(words),
                .choice = ""};
         if (verb == "number" && !number.has_value()) {
-            fmt::print("? '{}' is no number\n", printable(std::string(rest)));
+            fmt::print("? '{}' is not a number\n", printable(std::string(rest)));
             return;
         }
     } else if (verb == "choice" || prompt.ask == Ask::CHOICE) {
@@ -102,7 +102,7 @@ void OperatorLine::take(commissioning::Guide &guide, double now_s, const std::st
             .type = Act::Type::CHOICE, .number = 0, .choice = std::string(verb == "choice" ? rest : words)};
     }
     if (!guide.act(guide.prompt_number(), act)) {
-        fmt::print("? '{}' is no answer to this; the answers: {}, or cannot\n", printable(std::string(words)),
+        fmt::print("? '{}' is not a valid answer; valid are: {}, or cannot\n", printable(std::string(words)),
                    ask_name(prompt.ask));
         std::fflush(stdout);
     }
@@ -125,9 +125,10 @@ void OperatorLine::show_finding(const commissioning::Step &step, const commissio
 
 void OperatorLine::show_end(const commissioning::Guide &guide, const std::string &error) {
     if (error.empty() && !guide.isFaulted()) {
-        fmt::print("{}\n", guide.isReady() ? "The machine is ready."
-                                           : "These steps are done. `millwright commission report` shows "
-                                             "what is left.");
+        fmt::print("{}\n",
+                   guide.isReady()
+                       ? "The machine is ready."
+                       : "These steps are done. `millwright commission report` shows the remaining steps.");
     }
 }
 

@@ -23,14 +23,13 @@ struct WriteWords {
     options::Words rest;
 
     options::CommandLine line() {
-        options::CommandLine line("millwright commission write FOLDER [KEY=VALUE ...] [options]",
-                                  "Writes the files of a machine into a new folder, or into the folder of a "
-                                  "machine again with other "
-                                  "answers.\nEdits of its files survive. Where an edit and a new answer "
-                                  "change the same lines, nothing "
-                                  "is written, and the conflict is shown.\n");
+        options::CommandLine line(
+            "millwright commission write FOLDER [KEY=VALUE ...] [options]",
+            "Writes the files of a machine into a new folder, or again into the folder of a machine with "
+            "other answers.\nYour edits of the files are kept. If an edit and a new answer change the same "
+            "lines, nothing is written and the conflict is shown.\n");
         line.flag("--keep", "conflicts: keep the edited lines", isEditKept);
-        line.flag("--replace", "conflicts: take the new lines; the edited file is kept as FILE~", isNewTaken);
+        line.flag("--replace", "conflicts: use the new lines; the edited file is saved as FILE~", isNewTaken);
         line.rest(rest);
         line.footer("exit status: 0 written, 1 rejected or a conflict, 2 wrong usage\n");
         return line;
@@ -46,10 +45,9 @@ struct DescribeWords {
     options::Words rest;
 
     options::CommandLine line() {
-        options::CommandLine line(
-            "millwright commission describe [FOLDER] [KEY=VALUE ...]",
-            "Prints the questions about a machine: key, answer, text, range and the reason "
-            "of the preset.\nWith a folder: of the machine there.\n");
+        options::CommandLine line("millwright commission describe [FOLDER] [KEY=VALUE ...]",
+                                  "Prints the questions about a machine: key, answer, text, range and the "
+                                  "reason of the preset.\nWith FOLDER: for the machine in this folder.\n");
         line.rest(rest);
         line.footer("exit status: 0 all answers are valid, 1 an answer is not valid, 2 wrong usage\n");
         return line;

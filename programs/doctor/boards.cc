@@ -13,7 +13,7 @@ namespace {
 
 std::string text_of(mesa::BoardFault fault) {
     switch (fault) {
-    case mesa::BoardFault::STOPPED: return "too many cycles failed, and the traffic was stopped";
+    case mesa::BoardFault::STOPPED: return "too many cycles failed: communication was stopped";
     case mesa::BoardFault::OTHER_BOARD: return "another board answers at this address";
     case mesa::BoardFault::WATCHDOG: return "its watchdog has tripped";
     case mesa::BoardFault::NONE: break;

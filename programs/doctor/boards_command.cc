@@ -29,10 +29,9 @@ struct BoardsWords {
     options::CommandLine line() {
         options::CommandLine line(
             "millwright boards [ADDRESS[:PORT] ...] [options]",
-            "Asks Mesa boards on Ethernet for their name and firmware, and changes nothing. Without an "
-            "address "
-            "it asks at 192.168.1.121 and 10.10.10.10, which boards have from the factory.\n");
-        line.flag("--pins", "each pin: its connector, its GPIO name in HAL, what else it can be", withPins);
+            "Reads name and firmware of Mesa boards on Ethernet and changes nothing. Without an address it "
+            "tries 192.168.1.121 and 10.10.10.10, the factory settings.\n");
+        line.flag("--pins", "list all pins: connector, GPIO name in HAL, other functions", withPins);
         line.text("--save", "FILE", "write the firmware of the board to a file, for checks without the board",
                   file);
         line.rest(addresses);

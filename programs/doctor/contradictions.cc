@@ -49,22 +49,22 @@ void examine_order(const IniFile &ini, const std::string &section, const Order &
 
 constexpr Order JOINT_TRAVEL = {"MIN_LIMIT", "MAX_LIMIT", "the joint cannot move",
                                 diagnostics::Severity::ERROR};
-constexpr const char *NO_FOLLOWING = "steps cannot follow, and the joint fails with a following error";
+constexpr const char *NO_FOLLOWING = "the step generator cannot follow, and the joint gets a following error";
 constexpr std::array JOINT_ORDERS = {
     Order{"MIN_FERROR", "FERROR", "the limit at standstill is larger than at full speed"},
     Order{"MAX_VELOCITY", "STEPGEN_MAXVEL", NO_FOLLOWING, diagnostics::Severity::WARNING, true},
     Order{"MAX_ACCELERATION", "STEPGEN_MAXACCEL", NO_FOLLOWING, diagnostics::Severity::WARNING, true},
 };
 constexpr std::array SPINDLE_ORDERS = {
-    Order{"MIN_VELOCITY", "MAX_VELOCITY", "no speed of the spindle is possible"},
-    Order{"MIN_FORWARD_VELOCITY", "MAX_FORWARD_VELOCITY", "no speed of M3 is possible"},
-    Order{"MIN_REVERSE_VELOCITY", "MAX_REVERSE_VELOCITY", "no speed of M4 is possible"},
+    Order{"MIN_VELOCITY", "MAX_VELOCITY", "no spindle speed is possible"},
+    Order{"MIN_FORWARD_VELOCITY", "MAX_FORWARD_VELOCITY", "M3 has no possible speed"},
+    Order{"MIN_REVERSE_VELOCITY", "MAX_REVERSE_VELOCITY", "M4 has no possible speed"},
 };
 constexpr std::array DISPLAY_ORDERS = {
-    Order{"MIN_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "no speed of jogs is possible"},
-    Order{"DEFAULT_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "jogs begin with the latter"},
-    Order{"MIN_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "no speed of jogs is possible"},
-    Order{"DEFAULT_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "jogs begin with the latter"},
+    Order{"MIN_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "no jog speed is possible"},
+    Order{"DEFAULT_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "jogs start at the latter"},
+    Order{"MIN_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "no jog speed is possible"},
+    Order{"DEFAULT_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "jogs start at the latter"},
 };
 constexpr std::array TRAJ_ORDERS = {
     Order{"DEFAULT_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "the latter is used"},
@@ -84,14 +84,15 @@ void examine_homing(const IniFile &ini, const std::string &section, diagnostics:
     const bool latches = latch.has_value() && latch->value != 0;
     if (searches && !latches) {
         sink.error(search->str() + " without HOME_LATCH_VEL: homing does not start", search->place(),
-                   "the speed at which the edge of the switch counts");
+                   "the speed at which the switch edge is latched");
     }
     if (!searches && latches && !usesIndex) {
         sink.error(latch->str() + " with neither HOME_SEARCH_VEL nor HOME_USE_INDEX: homing does not start",
                    latch->place());
     }
     if (searches && latches && std::fabs(latch->value) > std::fabs(search->value)) {
-        sink.warning(latch->str() + " is faster than HOME_SEARCH_VEL: the edge is met less exactly",
+        sink.warning(latch->str() +
+                         " is faster than HOME_SEARCH_VEL: the switch edge is latched less accurately",
                      latch->place());
     }
     if (searches && fastest.has_value() && std::fabs(search->value) > fastest->value) {
@@ -105,7 +106,7 @@ void examine_scales(const IniFile &ini, const std::string &section, diagnostics:
         const auto scale = number(ini, section, key);
         if (scale.has_value() && scale->value == 0) {
             sink.error(scale->str() + ": the joint has no unit", scale->place(),
-                       "steps or counts in a machine unit");
+                       "steps or counts per machine unit");
         }
     }
 }
@@ -129,9 +130,9 @@ void examine_home_order(const IniFile &ini, const MachineConfig &machine, diagno
     const bool gapless =
         expected <= 1 && std::ranges::all_of(used, [&expected](int place) { return place == expected++; });
     if (!gapless) {
-        sink.warning(fmt::format("HOME_SEQUENCE has {}: numbers between are left out, begin with 0 or 1",
-                                 fmt::join(used, ", ")),
-                     highest->place);
+        sink.warning(
+            fmt::format("HOME_SEQUENCE has {}: use consecutive numbers from 0 or 1", fmt::join(used, ", ")),
+            highest->place);
     }
 }
 
@@ -164,7 +165,7 @@ void examine_axis(const IniFile &ini, const MachineConfig &machine, int axis, di
     if (mixed) {
         sink.warning(fmt::format("[{}]TYPE = {} moves axis {}, which {}: its unit is wrong", of_joint, type,
                                  geometry::AXIS_LETTERS[axis],
-                                 geometry::isAngular(axis) ? "turns" : "is straight"),
+                                 geometry::isAngular(axis) ? "is rotary" : "is linear"),
                      ini.find(of_joint, "TYPE")->place);
     }
 }
@@ -177,7 +178,7 @@ void examine_letters(const IniFile &ini, const MachineConfig &machine, diagnosti
     if (plain && joints != nullptr && letters > machine.num_joints) {
         sink.error(fmt::format("[TRAJ]COORDINATES has {} letters, [KINS]JOINTS = {}: axes without a joint",
                                letters, machine.num_joints),
-                   joints->place, "as many joints as letters");
+                   joints->place, "set [KINS]JOINTS to the number of letters");
     }
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         const std::string section = axis_section(axis);
@@ -229,12 +230,12 @@ void examine_periods(const IniFile &ini, diagnostics::Sink &sink) {
     const auto servo = number(ini, "EMCMOT", "SERVO_PERIOD");
     if (base.has_value() && servo.has_value() && base->value > servo->value && servo->value > 0) {
         sink.error(base->str() + " is longer than " + servo->str(), base->place(),
-                   "the base thread is the fast one; 0 where there is none");
+                   "the base thread must be faster than the servo thread; 0: no base thread");
     }
     const auto task = number(ini, "TASK", "CYCLE_TIME");
     constexpr double SLOW_S = 0.2;
     if (task.has_value() && task->value > SLOW_S) {
-        sink.warning(task->str() + " s: operators wait that long for each command", task->place());
+        sink.warning(task->str() + " s delays each command of the operator by this time", task->place());
     }
 }
 

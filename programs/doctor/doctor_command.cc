@@ -30,18 +30,14 @@ struct DoctorWords {
     options::CommandLine line() {
         options::CommandLine line(
             "millwright doctor MACHINE.ini [options]",
-            "Checks an INI file, the files that it names, its HAL files and this computer before the "
-            "machine "
-            "is started,\n"
-            "and measures latency. One finding a line: file, line, column, how bad it is, what to do.\n"
-            "HAL files are carried out under the virtual clock, without the programs of loadusr; Tcl files "
-            "are "
+            "Checks an INI file, the files that it names, its HAL files and this computer before the machine "
+            "is started,\nand measures latency. Prints one finding per line: file, line, column, severity, "
+            "remedy.\nHAL files run with a virtual clock, without the programs of loadusr; Tcl files also "
             "run.\n");
         line.number("--latency", "SECONDS", "duration of the latency measurement, 0: none (10)",
                     scope.latency_s, 0, 86400);
-        line.flag("--no-hal", "the HAL files are not checked, and so neither are unknown keys", scope.has_hal,
-                  false);
-        line.flag("--no-system", "the computer is not checked", scope.has_system, false);
+        line.flag("--no-hal", "do not check HAL files and unknown keys", scope.has_hal, false);
+        line.flag("--no-system", "do not check the computer", scope.has_system, false);
         line.flag("--strict", "warnings count as errors", strict);
         line.rest(rest);
         line.footer("exit status: 0 the machine can be started, 1 there are errors, 2 wrong usage\n");

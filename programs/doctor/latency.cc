@@ -51,7 +51,7 @@ Result<std::vector<hal::view::LatencyFigures>> measure(const std::vector<hal::vi
 void judge_latency(const hal::view::LatencyFigures &figures, diagnostics::Sink &sink) {
     const std::int64_t jitter_ns = figures.jitter_ns();
     const std::string what =
-        fmt::format("thread {} of {}: {} intervals, off by {} at most", figures.name,
+        fmt::format("thread {} of {}: {} intervals, maximum deviation {}", figures.name,
                     microseconds(figures.period_ns), figures.intervals, microseconds(jitter_ns));
     if (figures.intervals == 0) {
         sink.warning(what + ": it has not run");
@@ -62,13 +62,13 @@ void judge_latency(const hal::view::LatencyFigures &figures, diagnostics::Sink &
         sink.note(what);
         return;
     }
-    const std::string way = part >= 1 ? "it misses its period" : "steps and positions come unevenly";
+    const std::string way = part >= 1 ? "it misses its period" : "step timing and positions are irregular";
     constexpr double STEP_NS = 1e5, LONGEST_NS = 5e6;
     const double longer_ns =
         std::max(1.0, std::ceil(static_cast<double>(jitter_ns) / TOLERABLE / STEP_NS)) * STEP_NS;
     const std::string otherwise =
         longer_ns <= LONGEST_NS ? fmt::format("; else a period of {:.0f} ns", longer_ns) : "";
-    sink.warning(what + ": " + way, {}, "first what the warnings on kernel and processors say" + otherwise);
+    sink.warning(what + ": " + way, {}, "first follow the warnings about kernel and processors" + otherwise);
 }
 
 void examine_latency(std::int64_t servo_period_ns, std::int64_t base_period_ns, double seconds,

@@ -120,8 +120,8 @@ void examine_writing(const std::string &path, const IniEntry *entry, diagnostics
         sink.error(label(*entry) + ": there is no folder '" + folder.string() + '\'', entry->place);
     } else if (::access(folder.c_str(), W_OK) != 0) {
         // Files are replaced, not overwritten.
-        sink.error(label(*entry) + ": this user cannot write into '" + folder.string() +
-                       "', and nothing is kept after a run",
+        sink.error(label(*entry) + ": this user cannot write to '" + folder.string() +
+                       "': changes are lost at the end of the machine",
                    entry->place, "copy the configuration to a folder of your own");
     } else if (isThere(path) && ::access(path.c_str(), R_OK) != 0) {
         sink.error(label(*entry) + ": this user cannot read '" + path + '\'', entry->place);
@@ -144,7 +144,7 @@ void examine_programs(const IniFile &ini, diagnostics::Sink &sink) {
     const std::string screen = display == nullptr ? "" : first_word(*display);
     if (!screen.empty() && !isOwnDisplay(screen) && find_program(screen, folder_of(ini)).empty()) {
         sink.warning("[DISPLAY]DISPLAY: there is no program '" + screen +
-                         "': only `start --no-display` brings the machine up",
+                         "': the machine starts only with `start --no-display`",
                      display->place, hal::hint_for_absent(screen));
     }
     for (const IniEntry *entry : ini.find_all("APPLICATIONS", "APP")) {

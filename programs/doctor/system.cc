@@ -38,14 +38,14 @@ void examine_kernel(const std::string &root, diagnostics::Sink &sink) {
     if (realtime) {
         sink.note(fmt::format("kernel {} has PREEMPT_RT", kernel.release));
     } else {
-        sink.warning(fmt::format("kernel {} has no PREEMPT_RT: its latency has no bound", kernel.release), {},
-                     "a machine that moves needs linux-image-rt-amd64; a simulated one does not");
+        sink.warning(fmt::format("kernel {} has no PREEMPT_RT: its latency is not bounded", kernel.release),
+                     {}, "a machine that moves needs linux-image-rt-amd64; a simulated one does not");
     }
     const std::string clock =
         line_of(root + "/sys/devices/system/clocksource/clocksource0/current_clocksource");
     if (clock == "hpet" || clock == "acpi_pm" || clock == "jiffies") {
         sink.warning("the clock of the kernel is " + clock + ", which is slow to read", {},
-                     "clocksource=tsc on the kernel's command line, where the processor keeps it steady");
+                     "clocksource=tsc on the kernel's command line, if the TSC of the processor is stable");
     }
 }
 
@@ -55,7 +55,7 @@ void examine_processors(const std::string &root, diagnostics::Sink &sink) {
         sink.warning("there is one processor: realtime threads share it with everything else");
     } else if (line_of(root + "/sys/devices/system/cpu/isolated").empty()) {
         sink.warning(
-            "no processor is isolated: other programs run beside the realtime threads", {},
+            "no processor is isolated: other programs share it with the realtime threads", {},
             fmt::format("isolcpus={0} nohz_full={0} rcu_nocbs={0} on the kernel's command line", count - 1));
     }
     std::set<std::string> governors;
@@ -112,12 +112,12 @@ void examine_rights(const std::string &program, diagnostics::Sink &sink) {
         sink.warning("millwright-rt may not lock its memory: the machine is not realtime", {}, remedy);
     }
     if ((has & SYS_RESOURCE) == 0) {
-        sink.warning(
-            "the kernel may end millwright-rt when memory is gone: it may not lower its oom_score_adj", {},
-            setcap);
+        sink.warning("the kernel may kill millwright-rt when memory runs out: it has no right to lower its "
+                     "oom_score_adj",
+                     {}, setcap);
     }
     if (::access("/dev/shm", W_OK) != 0) {
-        sink.error("this user cannot make shared memory: /dev/shm is not writable");
+        sink.error("this user cannot create shared memory: /dev/shm is not writable");
     }
     if (const auto folder = runtime::runtime_folder(); !folder.has_value()) {
         sink.error(folder.error());

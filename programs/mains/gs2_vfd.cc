@@ -20,7 +20,7 @@ Result<> read_parity(const mw::options::Words &words, char &into) {
     const auto first =
         words[0].empty() ? '\0' : static_cast<char>(std::toupper(static_cast<unsigned char>(words[0][0])));
     if (first != 'E' && first != 'O' && first != 'N') {
-        return mw::fail("'" + words[0] + "' is no parity: even, odd and none are");
+        return mw::fail("'" + words[0] + "' is not a parity: use even, odd or none");
     }
     into = first;
     return {};
@@ -35,23 +35,24 @@ int main(int argc, char **argv) {
     std::string name = "gs2_vfd";
     bool verbose = false;
     mw::options::CommandLine options("loadusr -Wn NAME gs2_vfd [OPTION ...]",
-                                     "An AutomationDirect GS2 drive on a serial line as pins of HAL.");
+                                     "HAL pins for an AutomationDirect GS2 drive on a serial line.");
     constexpr double MAX_S = 600.0;
     options.text("-d,--device", "FILE", "the serial line (/dev/ttyS0)", line.device);
-    options.number("-r,--rate", "BAUD", "its rate (38400)", line.baud, 110, 115200);
-    options.number("-b,--bits", "N", "its data bits (8)", line.bits, 5, 8);
-    options.number("-s,--stopbits", "N", "its stop bits (1)", line.stop, 1, 2);
-    options.take("-p,--parity", 1, "even|odd|none", "its parity (odd)",
+    options.number("-r,--rate", "BAUD", "baud rate (38400)", line.baud, 110, 115200);
+    options.number("-b,--bits", "N", "data bits (8)", line.bits, 5, 8);
+    options.number("-s,--stopbits", "N", "stop bits (1)", line.stop, 1, 2);
+    options.take("-p,--parity", 1, "even|odd|none", "parity of the line (odd)",
                  [&](const mw::options::Words &words) { return read_parity(words, line.parity); });
-    options.number("-t,--target", "N", "the drive's number on it (1)", line.slave, 1, 254);
-    options.text("-n,--name", "NAME", "of the component and its pins (gs2_vfd)", name);
-    options.number("-A,--accel-seconds", "S", "from standstill to maximum speed (10)", settings.accel_s, 0.1,
-                   MAX_S);
-    options.number("-D,--decel-seconds", "S", "and back; 0: it coasts (0)", settings.decel_s, 0.0, MAX_S);
-    options.flag("-R,--braking-resistor", "there is one: the drive brakes at any voltage",
+    options.number("-t,--target", "N", "slave address of the drive (1)", line.slave, 1, 254);
+    options.text("-n,--name", "NAME", "name of the component and its pins (gs2_vfd)", name);
+    options.number("-A,--accel-seconds", "S", "acceleration time to maximum speed (10)", settings.accel_s,
+                   0.1, MAX_S);
+    options.number("-D,--decel-seconds", "S", "deceleration time from maximum speed; 0: the motor coasts (0)",
+                   settings.decel_s, 0.0, MAX_S);
+    options.flag("-R,--braking-resistor", "a braking resistor is fitted: the drive brakes at any voltage",
                  settings.has_braking_resistor);
     options.flag("-g,--debug", "show all bytes", line.shown);
-    options.flag("-v,--verbose", "report what is opened", verbose);
+    options.flag("-v,--verbose", "report the opened serial line", verbose);
     const mw::options::Words words(argv + 1, argv + argc);
     if (mw::options::wantsHelp(words)) {
         std::fputs(options.help().c_str(), stdout);

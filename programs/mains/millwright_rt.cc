@@ -40,7 +40,7 @@ struct Arguments {
         line.text("--instance", "NAME", "default: $MILLWRIGHT_INSTANCE, else 'default'", options.instance);
         line.number("--cpu", "N", "processor of the threads (default: the last isolated one, else the last)",
                     cpu, 0, MAX_CPU);
-        line.flag("--simulation", "use no realtime priority", options.realtime.is_simulation);
+        line.flag("--simulation", "run without realtime priority", options.realtime.is_simulation);
         line.number("--ready-fd", "N", "", ready_fd, 0, MAX_FD);
         line.number("--starter-fd", "N", "", options.controller_fd, 0, MAX_FD);
         return line;

@@ -60,7 +60,7 @@ inline StreamWords read_stream_words(const char *program, const std::vector<std:
         }
         const auto number = option.value.empty() ? std::int64_t{0} : parse_int(option.value).value_or(-1);
         if (number < 0) {
-            language::tell(program, Error{"'" + option.value + "' is not a number of at least 0", {}, {}});
+            language::tell(program, Error{"'" + option.value + "' is not a number of 0 or more", {}, {}});
             return {};
         }
         take(option.letter, static_cast<long>(number));

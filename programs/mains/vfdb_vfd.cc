@@ -104,13 +104,14 @@ int main(int argc, char **argv) {
     std::string name = "vfdb_vfd", ini = machine != nullptr ? machine : "", section = "VFD-B";
     bool debugged = false, reported = false;
     mw::options::CommandLine options("loadusr -Wn NAME vfdb_vfd [OPTION ...]",
-                                     "A Delta VFD-B drive on a serial line as pins of HAL.");
-    options.text("-n,--name", "NAME", "of the component and its pins (vfdb_vfd)", name);
-    options.text("-I,--ini", "FILE", "where its settings are (INI_FILE_NAME of the environment)", ini);
-    options.text("-S,--section", "NAME", "in this section (VFD-B)", section);
+                                     "HAL pins for a Delta VFD-B drive on a serial line.");
+    options.text("-n,--name", "NAME", "name of the component and its pins (vfdb_vfd)", name);
+    options.text("-I,--ini", "FILE", "INI file of the settings (default: environment variable INI_FILE_NAME)",
+                 ini);
+    options.text("-S,--section", "NAME", "INI section of the settings (VFD-B)", section);
     options.flag("-m,--modbus-debug", "show all bytes", line.shown);
-    options.flag("-d,--debug", "report what is opened", debugged);
-    options.flag("-r,--report-device", "the same", reported);
+    options.flag("-d,--debug", "report the opened serial line", debugged);
+    options.flag("-r,--report-device", "same as --debug", reported);
     const mw::options::Words words(argv + 1, argv + argc);
     if (mw::options::wantsHelp(words)) {
         std::fputs(options.help().c_str(), stdout);
@@ -125,7 +126,7 @@ int main(int argc, char **argv) {
     const auto file = mw::ini::IniFile::load(ini, sink);
     if (!file.has_value() || !file->hasSection(section)) {
         mw::language::tell("vfdb_vfd", file.has_value() ? mw::Error{ini + " has no section [" + section +
-                                                                    "], where the drive's settings are"}
+                                                                    "] with the settings of the drive"}
                                                         : file.error());
         return 1;
     }

@@ -49,9 +49,9 @@ struct PublishWords {
                                   "broker\nby Sparkplug B, and to clients of MTConnect. It reads the machine "
                                   "and cannot command it. It waits "
                                   "for a machine that\nis not running yet. Ends at SIGINT or SIGTERM.\n");
-        line.flag("--check", "check the section, and end", isCheck);
+        line.flag("--check", "check the section and exit", isCheck);
         line.rest(rest);
-        line.footer("exit status: 0 ended in order, 1 rejected or failed, 2 wrong usage\n");
+        line.footer("exit status: 0 normal end, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
     Result<> parse(const std::vector<std::string> &words) {
@@ -180,16 +180,15 @@ void read_machine(MachineReader &reader, const Settings &settings, LiveData *dat
             sync_s = steady_s() + SYNC_S;
             const std::string now = data->sync();
             if (!now.empty() && now != trouble) {
-                language::tell(fmt::format("Values cannot be kept on the disk: {}.", now));
+                language::tell(fmt::format("Cannot store values on the disk: {}.", now));
             }
             trouble = now;
             const TimeMs ahead_ms = data->ahead_ms(utc_ms());
             const bool wasAhead = std::exchange(isAhead, ahead_ms > MOST_AHEAD_MS);
             if (isAhead && !wasAhead) {
-                language::tell(
-                    fmt::format("The clock of this computer was set back: times of values are {} s "
-                                "ahead until it reaches them.",
-                                ahead_ms / MS_PER_S));
+                language::tell(fmt::format("The clock of this computer was set back: time stamps of values "
+                                           "are {} s ahead until the clock catches up.",
+                                           ahead_ms / MS_PER_S));
             }
         }
         next_s = std::max(next_s + settings.interval_s, steady_s());

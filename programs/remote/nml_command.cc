@@ -28,18 +28,16 @@ struct NmlWords {
     options::CommandLine line() {
         options::CommandLine line(
             "millwright nml FILE.nml [options]",
-            "Makes the channels emcCommand, emcStatus and emcError of an NML configuration for the machine "
-            "that "
-            "'millwright\n"
-            "start' keeps up, and serves them to other programs, over the network where a B line has a port. "
-            "It is a\n"
-            "client: the machine continues without it. Ends with the machine, at SIGINT or SIGTERM.\n");
-        line.text("--process", "NAME", "whose P lines say how the machine uses the channels; emc without it",
-                  process);
+            "Creates the channels emcCommand, emcStatus and emcError of an NML configuration for the machine "
+            "that 'millwright\nstart' runs, and serves them to other programs, over the network if a B line "
+            "has a port. It is a\nclient: the machine continues without it. Ends with the machine, or at "
+            "SIGINT or SIGTERM.\n");
+        line.text("--process", "NAME",
+                  "process whose P lines define the channels of the machine (default emc)", process);
         line.text("--server", "NAME",
-                  "whose P lines say which buffers are made and served; emcsvr without it", server);
+                  "process whose P lines define the buffers to create and serve (default emcsvr)", server);
         line.rest(rest);
-        line.footer("exit status: 0 ended in order, 1 rejected or failed, 2 wrong usage\n");
+        line.footer("exit status: 0 normal end, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
     Result<> parse(const std::vector<std::string> &words) {

@@ -24,8 +24,8 @@ class RshService final : public TextService {
 int command_rsh(const std::vector<std::string> &arguments) {
     TextServerWords words{
         "linuxcncrsh",
-        "Lets other programs command the running machine by lines of text over TCP (man page linuxcncrsh). "
-        "Ends with the\nmachine, by SHUTDOWN of a client, at SIGINT or SIGTERM.\n",
+        "Accepts commands for the running machine as lines of text over TCP (man page linuxcncrsh). Ends "
+        "with the\nmachine, at SHUTDOWN from a client, or at SIGINT or SIGTERM.\n",
         true};
     return serve_text(std::move(words), arguments, [](const TextMachine &machine) {
         return std::unique_ptr<TextService>(std::make_unique<RshService>(machine));

@@ -38,9 +38,9 @@ class ScheduleService final : public TextService {
 
 int command_schedule(const std::vector<std::string> &arguments) {
     TextServerWords words{"schedrmt",
-                          "Keeps a queue of programs for the running machine and runs them one after "
-                          "another, by lines of text over TCP\n(man page schedrmt). Ends with the machine, "
-                          "by SHUTDOWN of a client, at SIGINT or SIGTERM.\n",
+                          "Runs a queue of programs on the running machine. Clients control the queue by "
+                          "lines of text over TCP\n(man page schedrmt). Ends with the machine, at SHUTDOWN "
+                          "from a client, or at SIGINT or SIGTERM.\n",
                           false};
     return serve_text(std::move(words), arguments, [](const TextMachine &machine) {
         return std::unique_ptr<TextService>(std::make_unique<ScheduleService>(machine));

@@ -86,22 +86,23 @@ Result<> serve(TextServerWords &words, TextServiceMaking make, diagnostics::Sink
 
 options::CommandLine TextServerWords::line() {
     options::CommandLine line(program + " [options] [-- -ini MACHINE.ini]", what);
-    line.number("-p,--port", "N", "listen there; 5007 without it, 0: a free one", server.port, 0, 65535);
-    line.text("-n,--name", "NAME", "as the server calls itself; EMCNETSVR without it", settings.name);
-    line.text("-w,--connectpw", "PASSWORD", "of HELLO; EMC without it", settings.connect_password);
-    line.text("-e,--enablepw", "PASSWORD", "of SET ENABLE; EMCTOO without it", settings.enable_password);
-    line.number("-s,--sessions", "N", "connections at a time; -1 without it: as many as come",
+    line.number("-p,--port", "N", "TCP port (default 5007; 0: a free port)", server.port, 0, 65535);
+    line.text("-n,--name", "NAME", "name of the server (default EMCNETSVR)", settings.name);
+    line.text("-w,--connectpw", "PASSWORD", "password of HELLO (default EMC)", settings.connect_password);
+    line.text("-e,--enablepw", "PASSWORD", "password of SET ENABLE (default EMCTOO)",
+              settings.enable_password);
+    line.number("-s,--sessions", "N", "maximum number of connections (default -1: no limit)",
                 server.max_sessions, -1, 100000);
-    line.text("-d,--path", "FOLDER", "where programs are that are opened; that of the INI file without it",
+    line.text("-d,--path", "FOLDER", "folder of the programs (default: that of the INI file)",
               settings.program_folder);
     line.text("-b,--bind", "ADDRESS",
-              "listen there, so that other computers can connect; needs its own passwords", server.address);
-    line.flag("-4,--ipv4", "this computer by IPv4 only, not by IPv6", server.isIpv4Only);
+              "listen at this address for other computers; requires your own passwords", server.address);
+    line.flag("-4,--ipv4", "listen on IPv4 only", server.isIpv4Only);
     if (has_dialects) {
-        line.text("--dialect", "2.9|2.10", "whose answers are given; 2.10 without it", dialect);
+        line.text("--dialect", "2.9|2.10", "LinuxCNC version of the replies (default 2.10)", dialect);
     }
     line.flag("-q,--quiet", "no effect: connections are never reported", isQuiet);
-    line.footer("exit status: 0 ended in order, 1 rejected or failed, 2 wrong usage\n");
+    line.footer("exit status: 0 normal end, 1 rejected or failed, 2 wrong usage\n");
     return line;
 }
 
@@ -116,11 +117,11 @@ Result<> TextServerWords::parse(std::vector<std::string> words) {
         if ((behind[i] == "-ini" || behind[i] == "--ini") && i + 1 < behind.size()) {
             ini = behind[++i];
         } else {
-            return fail("'" + behind[i] + "' behind -- is not known", {}, "-- -ini MACHINE.ini");
+            return fail("'" + behind[i] + "' after -- is unknown", {}, "-- -ini MACHINE.ini");
         }
     }
     if (dialect != "2.9" && dialect != "2.10") {
-        return fail("there is no dialect '" + dialect + "'", {}, "2.9 or 2.10");
+        return fail("unknown dialect '" + dialect + "'", {}, "2.9 or 2.10");
     }
     settings.dialect = dialect == "2.9" ? Dialect::OLD : Dialect::NEWER;
     return check_passwords();
@@ -133,7 +134,7 @@ Result<> TextServerWords::check_passwords() const {
         !server.address.empty() && server.address != "::1" && !server.address.starts_with("127.");
     if (open && (settings.connect_password == preset.connect_password ||
                  settings.enable_password == preset.enable_password)) {
-        return fail("--bind lets other computers move this machine: give passwords of your own", {},
+        return fail("--bind allows other computers to move this machine: set your own passwords", {},
                     "--connectpw and --enablepw");
     }
     return {};

@@ -43,12 +43,12 @@ struct CheckWords {
     options::CommandLine line() {
         options::CommandLine line(
             "millwright check PROGRAM.ngc --ini MACHINE.ini [options]",
-            "Interprets the program for the machine and checks its moves against the limits, "
-            "moving nothing. Prints the\n"
-            "extents in machine coordinates, and the time that the planner expects.\n");
+            "Interprets the program for the machine and checks its moves against the limits. Nothing moves. "
+            "Prints the\nextents in machine coordinates and the time that the planner expects.\n");
         line.text("--ini", "MACHINE.ini", "the machine", ini);
         line.text("--plot", "FILE", "draw the tool path, as .png or .svg", plot);
-        line.number("--statements", "N", "a loop may take N statements, 0: any number", bound, 0, INT64_MAX);
+        line.number("--statements", "N", "maximum number of statements of a loop (0: no limit)", bound, 0,
+                    INT64_MAX);
         line.rest(rest);
         line.footer("exit status: 0 no error, 1 errors, 2 wrong usage\n");
         return line;

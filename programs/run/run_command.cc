@@ -172,7 +172,7 @@ class Run {
                 {fmt::format("{} needs a separate machine for this program, but a machine is already running",
                              option),
                  {},
-                 "leave it out, or end 'millwright start'; millwright check draws programs"});
+                 "omit the option, or end 'millwright start'; millwright check draws programs"});
         }
         return option == nullptr;
     }

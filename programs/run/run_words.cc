@@ -19,26 +19,27 @@ options::CommandLine run_line(RunWords &run, options::Words &rest) {
         "default) a simulated operator confirms tool changes and program stops, and prints each.\nWith "
         "--realtime a person confirms them, by keys or by HAL pins (halui, hal_manualtoolchange):\n  y start "
         "   h or space hold    r resume    a abort    t the tool is changed\n");
-    line.flag("--realtime", "in real time, in two processes; asks at the terminal before it switches on",
+    line.flag("--realtime",
+              "run in real time, in two processes; the terminal asks before the machine is switched on",
               run.realtime);
-    line.flag("--yes", "do not ask before the start, and start without a terminal; confirms nothing else",
+    line.flag("--yes", "start without confirmation and without a terminal; later confirmations stay required",
               run.confirmed);
     line.text("--trace", "FILE.csv", "write the commanded positions of every servo cycle", run.trace);
     line.text("--certificate", "FILE.json",
-              "write the largest use of each limit and the path deviation, with their lines",
+              "write the maximum use of each limit and the path deviation, with line numbers",
               run.certificate);
     line.text("--plot", "FILE", "draw the tool path, as .png or .svg; also for a rejected program", run.plot);
     line.number("--from-line", "N",
-                "begin at this line: earlier lines are calculated, and a person confirms the approach",
+                "start at this line: earlier lines are calculated, and the operator confirms the approach",
                 run.from_line, 1, MOST_LINES);
     line.number("--patience", "SECONDS",
                 "stop after this time without progress (default 60; in a simulation, virtual time)",
                 run.patience_s, 0.001, MOST_PATIENCE_S);
     line.on_or_off("--optional-stop", "M1 stops (on)", run.switches.optional_stop_on);
-    line.on_or_off("--block-delete", "lines that begin with / are left out (on)",
+    line.on_or_off("--block-delete", "block delete: skip lines that begin with / (on)",
                    run.switches.block_delete_on);
-    line.flag("--no-estimate", "do not calculate the time that the planner expects", run.estimated, false);
-    line.flag("--no-check", "start even a program that is known to fail", run.checked, false);
+    line.flag("--no-estimate", "do not calculate the expected time", run.estimated, false);
+    line.flag("--no-check", "start the program even if the check finds errors", run.checked, false);
     line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
               run.homing_module);
     line.text("--tpmod", "NAME", "a planner module and its parameters, instead of [TRAJ]TPMOD",

@@ -72,7 +72,7 @@ struct UiWords {
                   "screen shows a warning",
                   door.unprotected);
         line.rest(rest);
-        line.footer("exit status: 0 ended in order, 1 rejected or failed, 2 wrong usage\n");
+        line.footer("exit status: 0 normal end, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
     Result<> parse(const std::vector<std::string> &words) {

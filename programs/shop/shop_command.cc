@@ -46,9 +46,9 @@ struct ShopWords {
             "section [SHOP] sets,\nserves a page of the machines, and sends notifications. It cannot command "
             "a "
             "machine. Ends at SIGINT or SIGTERM.\n");
-        line.flag("--check", "check the section, and end", isCheck);
+        line.flag("--check", "check the section and exit", isCheck);
         line.rest(rest);
-        line.footer("exit status: 0 ended in order, 1 rejected or failed, 2 wrong usage\n");
+        line.footer("exit status: 0 normal end, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
     Result<> parse(const std::vector<std::string> &words) {

@@ -40,7 +40,7 @@ struct StartWords {
         line.flag("--strict", "unknown INI keys are errors", strict);
         line.rest(rest);
         line.footer(
-            "exit status: 0 ended in order, that of the display, 1 rejected or failed, 2 wrong usage\n");
+            "exit status: 0 normal end, or that of the display; 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
     Result<> parse(const std::vector<std::string> &words) {

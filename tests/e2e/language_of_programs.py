@@ -66,7 +66,7 @@ OTHER_ERRORS = (
     ('halrun a.ini', 'an INI file can only be run when it has [HAL]TWOPASS', 'eine INI-Datei kann nur ausgeführt werden, wenn sie [HAL]TWOPASS hat',
      'un archivo INI solo se puede ejecutar si tiene [HAL]TWOPASS'),
     ('halrun bad.tcl', "parameter or pin 'nosuch' does not exist", "der Parameter oder Pin 'nosuch' ist nicht vorhanden", "el parámetro o pin 'nosuch' no existe"),
-    ('halsampler -c x', "'x' is not a number of at least 0", "'x' ist keine Zahl ab 0", "'x' no es un número de 0 o más"),
+    ('halsampler -c x', "'x' is not a number of 0 or more", "'x' ist keine Zahl ab 0", "'x' no es un número de 0 o más"),
     ('millwright nosuch', "unknown command 'nosuch'; see millwright --help", "unbekannter Befehl 'nosuch'; siehe millwright --help", "orden desconocida 'nosuch'; véase millwright --help"),
     ('millwright hal watch nosuch', "no realtime process of instance", 'es läuft kein Echtzeitprozess der Instanz', 'no hay ningún proceso de tiempo real de la instancia'),
     ('latency-test 1', "'1' is no period", "'1' ist keine Periode", "'1' no es un periodo"),

@@ -76,14 +76,13 @@ int main(int argc, char **argv) {
     Settings settings;
     mw::options::CommandLine options("hm2-board [OPTION ...]",
                                      "A simulated Mesa board with HostMot2 on a UDP port.");
-    options.take("--listen", 1, "ADDRESS[:PORT]", "where it answers (127.0.0.1:27181)",
+    options.take("--listen", 1, "ADDRESS[:PORT]", "address and port of the board (127.0.0.1:27181)",
                  [&](const mw::options::Words &words) {
                      return board::read_listen_address(words[0], settings.server);
                  });
     options.text("--model", "NAME|FILE",
                  "type of board: 7i76e, 7i80, 7i92, 7i95, 7i96s, 7i97 or a file (7i76e)", settings.model);
-    options.text("--physics", "FILE", "motors, encoders and switches that are connected",
-                 settings.physics_file);
+    options.text("--physics", "FILE", "simulated motors, encoders and switches", settings.physics_file);
     options.text("--faults", "FILE", "faults of the link and of the board", settings.faults_file);
     options.text("--log", "FILE", "writes each command with its time in nanoseconds", settings.log_file);
     options.flag("--virtual-time", "the time advances by one period with each request of the host",

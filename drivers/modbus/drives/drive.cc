@@ -116,7 +116,8 @@ Result<> run(Drive &drive, const std::string &name, const Line &line,
              const volatile std::sig_atomic_t &stop) {
     const int id = hal_init(name.c_str());
     if (id < 0) {
-        return fail("HAL does not accept component " + name, {}, "does one with this name exist already?");
+        return fail("HAL does not accept component " + name, {},
+                    "a component with this name may already exist");
     }
     if (!drive.make_pins(id, name)) {
         hal_exit(id);
