@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char *USAGE = R"(usage: mb2hal config=FILE.ini
 
-Reads and writes Modbus devices by RTU or TCP, again and again, as pins of HAL. The man page mb2hal describes the file.
+Polls Modbus devices by RTU or TCP and exports their values as HAL pins. The man page mb2hal describes the file.
 
 exit status: 0 ended by a signal, 1 failed, 2 wrong usage
 )";

@@ -54,19 +54,18 @@ struct UiWords {
             "Serves the operator's screen of a machine that 'millwright start' runs, to browsers on this "
             "computer, and with\n--listen on others. It is a client: the machine runs without it, and it "
             "waits for a machine that is not running yet. Ends at SIGINT or SIGTERM.\n");
-        line.number("--port", "N", "listen on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
-                    65535);
-        line.flag("--open", "show the screen in the desktop's browser", opening);
+        line.number("--port", "N", "listen on 127.0.0.1:N (default 8850; 0: a free port)", port, 0, 65535);
+        line.flag("--open", "open the screen in the browser of the desktop", opening);
         line.flag("--display",
                   "the machine's display: starts the programs of EMBED_TAB_COMMAND, and runs POSTGUI_HALFILE "
                   "and _HALCMD",
                   is_display);
-        line.text("--screen", "FOLDER", "serve the screen from there", screen);
-        line.text("--listen", "ADDRESS[:PORT]",
-                  "accept other computers as well, with TLS and a token; 0.0.0.0: at every address; default "
-                  "port 8851",
-                  door.listen);
-        line.texts("--name", "NAME", "a name by which they call this computer, beside its own", door.names);
+        line.text("--screen", "FOLDER", "folder of the files of the screen", screen);
+        line.text(
+            "--listen", "ADDRESS[:PORT]",
+            "also accept other computers, with TLS and a token; 0.0.0.0: all addresses; default port 8851",
+            door.listen);
+        line.texts("--name", "NAME", "additional host name of this computer for --listen", door.names);
         line.text("--unprotected", "ROLE",
                   "no TLS and no token: anyone who reaches --listen may view, operate or configure; the "
                   "screen shows a warning",

@@ -44,7 +44,7 @@ void set_kind(DialogFacts &facts, const IniEntry &type, diagnostics::Sink &sink)
     if (!kind.has_value()) {
         sink.error(
             "[DISPLAY]" + type.key + " is '" + type.value +
-                "': a message is an okdialog, yesnodialog, nonedialog, status, or one of these with status",
+                "': valid types are okdialog, yesnodialog, nonedialog, status, or one of these with status",
             type.place);
     }
     facts.kind = kind.value_or(DialogKind{});

@@ -47,7 +47,7 @@ Result<Place> parse_place(const std::string &text) {
     constexpr std::uint64_t LAST_PORT = 65535;
     const auto port = rest.starts_with(':') ? parse_uint(rest.substr(1)) : std::nullopt;
     if (!port.has_value() || *port > LAST_PORT) {
-        return fail("--listen: '" + text + "' is no ADDRESS:PORT");
+        return fail("--listen: '" + text + "' is not ADDRESS:PORT");
     }
     place.port = static_cast<int>(*port);
     return place;
@@ -112,7 +112,7 @@ Result<std::optional<screen::RemoteDoor>> remote_door(const DoorWords &words, co
     if (words.listen.empty()) {
         return words.names.empty() && words.unprotected.empty()
                    ? Result<std::optional<screen::RemoteDoor>>(std::nullopt)
-                   : fail("--name and --unprotected belong to --listen ADDRESS");
+                   : fail("--name and --unprotected require --listen ADDRESS");
     }
     const auto place = parse_place(words.listen);
     if (!place.has_value()) {
@@ -158,10 +158,9 @@ screen::Tokens local_tokens(const std::string &folder, diagnostics::Sink &sink) 
 }
 
 void report_unknown(const std::string &why, diagnostics::Sink &sink) {
-    sink.warning(
-        fmt::format("The user of a connection on this computer cannot be found out: {}. Screens without "
-                    "a token see status only.",
-                    why));
+    sink.warning(fmt::format("Cannot find the user of a connection on this computer: {}. Screens without a "
+                             "token can only view status.",
+                             why));
 }
 
 std::string status_note(int port, const std::string &folder) {

@@ -35,7 +35,7 @@ std::optional<double> number(const ini::IniFile &ini, const char *section, const
     const bool zero = value.has_value() && *value == 0 && least == Least::FROM_0;
     if (!value.has_value() || !std::isfinite(*value) || (*value <= 0 && !zero)) {
         sink.warning("[" + entry->section + "]" + entry->key + " is '" + entry->value +
-                         "', which is no number above 0: the screen does without it",
+                         "', which is not a number above 0: the screen ignores the value",
                      entry->place);
         return std::nullopt;
     }
@@ -124,7 +124,7 @@ std::vector<Increment> increments_of(const machine::LoadedConfig &loaded, bool h
         }
     }
     for (const std::string &one : bad) {
-        sink.warning("[DISPLAY]INCREMENTS: '" + one + "' is no distance that the screen can offer",
+        sink.warning("[DISPLAY]INCREMENTS: '" + one + "' is not a valid jog increment",
                      linear != nullptr ? linear->place : SourcePlace{});
     }
     return all;
@@ -251,7 +251,7 @@ screen::MachineKind kind_of(const ini::IniFile &ini, diagnostics::Sink &sink) {
     }
     if (hint != nullptr && word != "mill") {
         sink.warning("[DISPLAY]MACHINE_TYPE_HINT is '" + hint->value +
-                         "', and this screen knows MILL, LATHE, BACK_TOOL_LATHE and FOAM: it shows a mill",
+                         "', not MILL, LATHE, BACK_TOOL_LATHE or FOAM: the screen shows a mill",
                      hint->place);
     }
     return MachineKind::MILL;
@@ -276,7 +276,7 @@ double foam_height(const ini::IniFile &ini, const char *key, double preset, diag
     const ini::IniEntry *entry = ini.find("DISPLAY", key);
     const auto value = entry == nullptr ? std::optional(preset) : parse_double(entry->value);
     if (!value.has_value()) {
-        sink.warning("[DISPLAY]" + entry->key + " is '" + entry->value + "', which is no number",
+        sink.warning("[DISPLAY]" + entry->key + " is '" + entry->value + "', which is not a number",
                      entry->place);
     }
     return value.value_or(preset);

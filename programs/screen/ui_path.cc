@@ -123,7 +123,7 @@ Result<std::shared_ptr<screen::PieceQueue>> PathReaders::begin(std::function<voi
 std::uint32_t PathReaders::interpret(Reader &reader, const std::string &path, const Hearer &hearer) const {
     std::error_code missing;  // reading reports this error itself, with its position
     if (std::filesystem::exists(path, missing) && !std::filesystem::is_regular_file(path, missing)) {
-        hearer.error(path + " is no file");  // reading a pipe might never end
+        hearer.error(path + " is not a file");  // reading a pipe might never end
         return 0;
     }
     diagnostics::Sink unheard;

@@ -63,8 +63,7 @@ std::vector<Tab> tabs_of(const ini::IniFile &ini, diagnostics::Sink &sink) {
     const auto locations = ini.find_all("DISPLAY", "EMBED_TAB_LOCATION");
     if (names.size() != commands.size()) {
         sink.error(fmt::format("[DISPLAY] has {} EMBED_TAB_NAME and {} EMBED_TAB_COMMAND: the screen shows "
-                               "as many panels as "
-                               "have both",
+                               "only panels that have both",
                                names.size(), commands.size()),
                    names.empty() ? commands[0]->place : names[0]->place);
     }

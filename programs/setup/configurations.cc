@@ -134,7 +134,7 @@ Result<std::string> copy_sample(const ConfigurationGroup &group, const Configura
     if (isFolder(programs.string()) && !fs::exists(fs::symlink_status(base / "nc_files", error))) {
         fs::create_directory_symlink(programs, base / "nc_files", error);
         if (error) {
-            return fail("no link to the programs of the sample: " + error.message());
+            return fail("cannot create a link to the programs of the sample: " + error.message());
         }
     }
     return (to / fs::path(configuration.ini).filename()).string();

@@ -206,7 +206,7 @@ Result<std::string> select_in_browser(int port, bool opening) {
         return std::unexpected(server.error());
     }
     const std::string address = fmt::format("http://127.0.0.1:{}/#key={}", (*server)->port(), setup->key);
-    fmt::print("choose a machine, or make one: {}\n", address);
+    fmt::print("select a machine or create a new one: {}\n", address);
     std::fflush(stdout);
     screen::Worker disk([&server](std::function<void()> act) { (*server)->post(std::move(act)); });
     screen::FirstSteps page(disk, **server, std::move(*setup));

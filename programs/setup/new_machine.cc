@@ -63,7 +63,7 @@ class Child {
     Result<> start(std::vector<std::string> words) {
         std::array<int, 2> ends{};
         if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-            return fail("no pipe can be made");
+            return fail("cannot create a pipe");
         }
         output_ = ends[0];
         posix_spawn_file_actions_t actions;
@@ -132,10 +132,10 @@ Result<setup::Answers> read_answers(const std::string &text, const std::string &
         const std::size_t equals = words.find('=');
         const std::string key(trim(words.substr(0, equals)));
         if (equals == std::string_view::npos || key.empty()) {
-            return fail("an answer is 'key = value'", {name, number, 1});
+            return fail("write an answer as 'key = value'", {name, number, 1});
         }
         if (!answers.emplace(key, trim(words.substr(equals + 1))).second) {
-            return fail("'" + printable(key) + "' has two values", {name, number, 1});
+            return fail("'" + printable(key) + "' is set twice", {name, number, 1});
         }
     }
     return answers;
@@ -173,7 +173,7 @@ Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &pl
     }
     auto partly = UnfinishedFolder::create(to.string());
     if (!partly.has_value()) {
-        return fail("cannot make a folder in '" + to.parent_path().string() + "'");
+        return fail("cannot create a folder in '" + to.parent_path().string() + "'");
     }
     fs::permissions(partly->path(),
                     fs::perms::others_read | fs::perms::others_exec | fs::perms::group_read |

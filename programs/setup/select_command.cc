@@ -31,8 +31,7 @@ struct Choice {
 std::vector<Choice> show(const std::vector<ConfigurationGroup> &groups, const std::string &last) {
     std::vector<Choice> choices;
     for (const ConfigurationGroup &group : groups) {
-        fmt::print("\n{}: {}{}\n", group.title, group.folder,
-                   group.isCopied ? " (a copy of yours is started)" : "");
+        fmt::print("\n{}: {}{}\n", group.title, group.folder, group.isCopied ? " (starts your copy)" : "");
         for (const Configuration &one : group.configurations) {
             choices.push_back({&group, &one});
             fmt::print("{:>4}{} {:<36} {}\n", choices.size(), one.ini == last ? '*' : ' ',
@@ -51,7 +50,7 @@ std::optional<Choice> ask(const std::vector<Choice> &choices, const std::string 
         }
     }
     while (stop_signal == 0) {
-        fmt::print("\nNumber, part of a name,{} or q to leave: ", preset.has_value() ? " ENTER for *" : "");
+        fmt::print("\nNumber, part of a name,{} or q to quit: ", preset.has_value() ? " ENTER for *" : "");
         std::fflush(stdout);
         std::array<char, 256> line{};
         if (std::fgets(line.data(), line.size(), stdin) == nullptr) {
@@ -78,7 +77,7 @@ std::optional<Choice> ask(const std::vector<Choice> &choices, const std::string 
             return found[0];
         }
         fmt::print("{}\n", language::shown(found.empty() ? "there is no such configuration"
-                                                         : "several have that in their name:"));
+                                                         : "several names match:"));
         for (const Choice &choice : found) {
             fmt::print("  {}\n", printable(choice.configuration->name));
         }
@@ -91,7 +90,7 @@ std::optional<Choice> ask(const std::vector<Choice> &choices, const std::string 
 Result<std::string> select_configuration() {
     const std::vector<ConfigurationGroup> groups = find_configurations();
     if (groups.empty()) {
-        return fail("no configuration is found", {}, "LINUXCNC_AUX_CONFIGS names folders of configurations");
+        return fail("no configuration found", {}, "LINUXCNC_AUX_CONFIGS names folders of configurations");
     }
     const std::string last = last_configuration();
     fmt::print("{}", language::shown("Machine configurations\n"));
@@ -116,16 +115,16 @@ int command_select(const std::vector<std::string> &arguments) {
     options::CommandLine line("millwright select [options]",
                               "Lists the machine configurations on this computer, lets you select one, and "
                               "starts it as `linuxcnc` does.\n");
-    line.flag("--list", "print their paths and ask nothing", listed);
-    line.flag("--print", "print the path of the chosen one instead of starting it", printed);
-    line.flag("--browser", "show them in a browser, with the wizard for a new machine", in_browser);
-    line.number("--port", "N", "with --browser: on 127.0.0.1:N, 0: on a free port; 8850 without it", port, 0,
-                65535);
+    line.flag("--list", "print the paths of all configurations and exit", listed);
+    line.flag("--print", "print the path of the selected configuration instead of starting it", printed);
+    line.flag("--browser", "show the configurations in a browser, with the wizard for new machines",
+              in_browser);
+    line.number("--port", "N", "with --browser: listen on 127.0.0.1:N (default 8850; 0: a free port)", port,
+                0, 65535);
     line.rest(rest);
-    line.footer("Looked for in ~/millwright/configs, ~/linuxcnc/configs, the folders of "
-                "LINUXCNC_AUX_CONFIGS, that of\n"
-                "`linuxcnc_var LINUXCNC_AUX_EXAMPLES`, and the samples.\n"
-                "exit status: that of the display; 0 nothing chosen, 1 failed, 2 wrong usage\n");
+    line.footer("Searches ~/millwright/configs, ~/linuxcnc/configs, the folders of LINUXCNC_AUX_CONFIGS, the "
+                "folder of\n`linuxcnc_var LINUXCNC_AUX_EXAMPLES`, and the samples.\nexit status: that of the "
+                "display; 0 nothing selected, 1 failed, 2 wrong usage\n");
     if (options::wantsHelp(arguments)) {
         fmt::print("{}", line.help());
         return 0;
@@ -133,7 +132,7 @@ int command_select(const std::vector<std::string> &arguments) {
     const auto parsed = line.parse(arguments);
     if (!parsed.has_value() || !rest.empty()) {
         fmt::print(stderr, "millwright select: {}\n",
-                   parsed.has_value() ? "takes no words" : parsed.error().str());
+                   parsed.has_value() ? "takes no arguments" : parsed.error().str());
         return 2;
     }
     if (listed) {

@@ -25,15 +25,13 @@ struct SetupWords {
         options::CommandLine line(
             "millwright setup FOLDER [KEY=VALUE ...] [options]",
             "Writes the configuration of a new machine into a folder: commented INI and HAL files, a tool "
-            "table, a first program;\nthen starts it in virtual time and runs that program. What is not "
-            "answered "
-            "has a preset; kind= is mill, router, gantry,\nlathe, foam, plasma, mill4 or mill5, units= mm or "
-            "inch, "
-            "drives= simulated, stepper or servo.\n");
+            "table, a first program;\nthen starts it in virtual time and runs that program. Keys without an "
+            "answer use presets; kind= is mill, router, gantry,\nlathe, foam, plasma, mill4 or mill5, units= "
+            "mm or inch, drives= simulated, stepper or servo.\n");
         line.flag("--questions",
-                  "print all keys of such a machine with presets and ranges, and write nothing",
+                  "print all keys of this machine type with presets and ranges, and write nothing",
                   questions_shown);
-        line.text("--answers", "FILE", "lines of 'key = value'; words of the command line go before them",
+        line.text("--answers", "FILE", "file with lines of 'key = value'; the command line overrides them",
                   answers);
         line.flag("--no-check", "do not start the machine", tried, false);
         line.rest(rest);
@@ -90,9 +88,10 @@ Result<> make_and_try(const SetupWords &words, const setup::Answers &answers, co
     }
     fmt::print("{}", printable(trial->output));
     if (!trial->good) {
-        return fail("the machine does not run its first program; its files are unchanged");
+        return fail("the test run of the first program failed; the files of the machine are kept");
     }
-    fmt::print("It runs in virtual time. At the screen: linuxcnc {}\n", shell_word(machine->ini));
+    fmt::print("It runs in virtual time. To start it with its screen: linuxcnc {}\n",
+               shell_word(machine->ini));
     return {};
 }
 

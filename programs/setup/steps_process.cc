@@ -97,7 +97,7 @@ Result<std::unique_ptr<screen::StepsProcess>> start_steps(const std::string &ini
     }
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-        return fail("no pipe can be made");
+        return fail("cannot create a pipe");
     }
     std::vector<char *> pointers;
     for (std::string &word : words) {

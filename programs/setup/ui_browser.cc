@@ -42,7 +42,7 @@ void Browser::open(const std::string &address) {
     std::string program = "xdg-open", words = address;
     char *arguments[] = {program.data(), words.data(), nullptr};
     if (::posix_spawnp(&pid_, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
-        fmt::print(stderr, "no xdg-open shows the screen: open {} in a browser\n", address);
+        fmt::print(stderr, "xdg-open cannot show the screen: open {} in a browser\n", address);
         pid_ = 0;
     }
 }

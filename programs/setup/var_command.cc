@@ -46,8 +46,8 @@ int command_var(const std::vector<std::string> &words) {
         const bool requested = words.size() == 1;
         fmt::print(
             requested ? stdout : stderr, "{}",
-            language::shown("usage: linuxcnc_var NAME | all\n\nPrints where things of this installation "
-                            "are. Names:\n"));
+            language::shown(
+                "usage: linuxcnc_var NAME | all\n\nPrints paths and values of this installation. Names:\n"));
         for (const Variable &variable : VARIABLES) {
             fmt::print(requested ? stdout : stderr, "  {}\n", variable.name);
         }

@@ -140,8 +140,7 @@ Result<> collect(const Settings &settings) {
     const double end_s = now().at_s + END_S;
     while (store.state() == StoreThread::State::BUSY) {
         if (now().at_s > end_s) {
-            report(
-                "The database does not answer. The program ends without it; the machines keep their values.");
+            report("The database does not answer. The program ends. The machines store their values.");
             std::fflush(nullptr);
             std::_Exit(0);
         }

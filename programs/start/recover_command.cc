@@ -32,11 +32,11 @@ struct RecoverWords {
             "where it can continue.\nAsks for confirmation of the approach, then continues the program. The "
             "machine must run ('millwright start'), be on\nand homed. The program continues after this "
             "command has ended.\n");
-        line.flag("--show", "only show what is offered", only_shown);
-        line.flag("--forget", "drop the offer", forgetting);
+        line.flag("--show", "only show the interrupted program", only_shown);
+        line.flag("--forget", "discard the interrupted program", forgetting);
         line.flag("--yes", "move along the approach without asking: make sure that it is clear", agreed);
         line.rest(rest);
-        line.footer("exit status: 0 done or nothing is offered, 1 rejected or failed, 2 wrong usage\n");
+        line.footer("exit status: 0 done or nothing to continue, 1 rejected or failed, 2 wrong usage\n");
         return line;
     }
 };
@@ -109,7 +109,9 @@ class Recovering {
         }
         if (!agreed && !hasAgreed()) {
             const auto dropped = ask(messages::AbortAll{});
-            return dropped.has_value() ? fail("not confirmed: nothing has moved, the offer stays") : dropped;
+            return dropped.has_value()
+                       ? fail("not confirmed: nothing has moved, and the program can still be continued")
+                       : dropped;
         }
         return ask(messages::ConfirmApproach{client_.status().approach.number});
     }
@@ -137,7 +139,7 @@ int command_recover(const std::vector<std::string> &arguments) {
     }
     auto parsed = words.line().parse(arguments);
     if (parsed.has_value() && !words.rest.empty()) {
-        parsed = fail("recover takes no words", {}, "millwright recover --help");
+        parsed = fail("recover takes no arguments", {}, "millwright recover --help");
     }
     if (!parsed.has_value()) {
         fmt::print(stderr, "millwright recover: {}\n", language::shown(parsed.error().str()));

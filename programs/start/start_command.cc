@@ -22,16 +22,13 @@ struct StartWords {
     options::Words rest;
 
     options::CommandLine line() {
-        options::CommandLine line("millwright start MACHINE.ini [options]",
-                                  "Starts the machine in real time, in emergency stop, and keeps it running "
-                                  "for its clients: 'millwright run\n"
-                                  "MACHINE.ini PROGRAM.ngc --realtime' then runs programs on it, one after "
-                                  "the other. It ends when the\n"
-                                  "display does that [DISPLAY]DISPLAY names, or at SIGINT, SIGTERM, SIGHUP "
-                                  "or SIGQUIT: everything stops\n"
-                                  "along its path, spindles, coolant and the machine go off, parameters are "
-                                  "saved. A second SIGINT ends it\n"
-                                  "at once.\n");
+        options::CommandLine line(
+            "millwright start MACHINE.ini [options]",
+            "Starts the machine in real time, in emergency stop, and keeps it running for its clients: "
+            "'millwright run\nMACHINE.ini PROGRAM.ngc --realtime' then runs programs on it, one after the "
+            "other. It ends when the\ndisplay of [DISPLAY]DISPLAY ends, or at SIGINT, SIGTERM, SIGHUP or "
+            "SIGQUIT: all axes stop along the\npath, spindles, coolant and the machine are switched off, "
+            "parameters are saved. A second SIGINT ends it\nat once.\n");
         line.flag("--no-display", "start no display: run until a signal ends it", displayed, false);
         line.text("--homemod", "NAME", "a homing module and its parameters, instead of [EMCMOT]HOMEMOD",
                   homing_module);

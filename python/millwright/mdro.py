@@ -175,13 +175,13 @@ def size_of(text):
 def settings(words, doc):
     """Options, with those of an INI file where one is named."""
     parser = Parser(prog=NAME, usage=doc.split('usage: ')[1].split('\n')[0],
-                    description='A digital read-out for machines that are moved by hand: where the scales are, in a browser of this computer.')
-    parser.add_argument('-v', action='count', default=0, dest='verbose', help='report what is done; twice: all requests')
+                    description='A digital readout for manual machines: shows the positions of the scales in a browser on this computer.')
+    parser.add_argument('-v', action='count', default=0, dest='verbose', help='verbose output; twice: also all requests')
     parser.add_argument('-p', type=size_of, default=None, dest='point_size', metavar='POINT_SIZE', help='size of the text (20)')
     parser.add_argument('-m', action='store_true', dest='mm', help='the scales count mm, not inches')
     parser.add_argument('-l', dest='var', metavar='FILE.var', help='offsets of G54 to G57 at the start')
-    parser.add_argument('-ini', dest='ini', metavar='FILE', help='the INI file that names it as DISPLAY')
-    parser.add_argument('--port', type=int, default=0, help='port of its page; 0: a free one')
+    parser.add_argument('-ini', dest='ini', metavar='FILE', help='INI file of the machine with this program as DISPLAY')
+    parser.add_argument('--port', type=int, default=0, help='port of the page (0: a free port)')
     parser.add_argument('axes', nargs='?', type=axes_of, default=None, metavar='AXES')
     options = parser.parse_args(words)
     options.postgui = []

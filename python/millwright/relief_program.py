@@ -21,23 +21,23 @@ OPTIONS = (
     ('units', ('in', 'mm'), 'in', False, 'G20 or G21, and the unit of lengths here'),
     ('invert', bool, False, False, 'white is low, black is high'),
     ('normalize', bool, False, False, 'the darkest pixel is black, the lightest one white'),
-    ('expand', ('none', 'white', 'black'), 'none', False, 'a border as wide as the tool around the picture'),
-    ('tolerance', float, 0.001, True, 'how far the path may be off: half of it in its lines, half where they are blended (G64)'),
-    ('pixel-size', float, 0.006, True, 'distance of two pixels'),
+    ('expand', ('none', 'white', 'black'), 'none', False, 'add a border of the tool width around the image'),
+    ('tolerance', float, 0.001, True, 'path tolerance: half for the lines, half for blending (G64)'),
+    ('pixel-size', float, 0.006, True, 'distance between pixels'),
     ('feed', float, 12.0, True, 'feed rate, per minute'),
-    ('plunge-feed', float, 12.0, True, 'feed rate downwards at the begin of a cut, per minute'),
+    ('plunge-feed', float, 12.0, True, 'plunge feed rate, per minute'),
     ('spindle', float, 1000.0, False, 'spindle speed, rpm'),
     ('pattern', ('rows', 'columns', 'rows-columns', 'columns-rows'), 'rows', False, 'scan pattern'),
     ('direction', ('positive', 'negative', 'alternating', 'up', 'down'), 'positive', False, 'scan direction; up: from low to high'),
-    ('depth', float, 0.25, True, 'of the lowest pixel below the top of the stock'),
-    ('step-over', int, 8, False, 'distance of two scans, in pixels'),
-    ('tool-diameter', float, 0.0625, True, 'of the part that cuts'),
-    ('safety-height', float, 0.012, True, 'of moves over the stock, above its top'),
-    ('tool', ('ball', 'flat', 'vee30', 'vee45', 'vee60'), 'ball', False, 'its shape; veeN: flanks N degrees steep'),
-    ('lace', ('none', 'secondary', 'full'), 'none', False, 'lace bounding: leave out flat parts in the second, also steep ones in the first direction'),
-    ('contact-angle', float, 45.0, False, 'what is steep for --lace, degrees'),
-    ('roughing-offset', float, 0.0, True, 'roughing stays so far above the surface; 0: no roughing'),
-    ('roughing-depth', float, 0.25, True, 'of a layer of roughing'),
+    ('depth', float, 0.25, True, 'depth of the lowest pixel below the top of the stock'),
+    ('step-over', int, 8, False, 'step-over between scans, in pixels'),
+    ('tool-diameter', float, 0.0625, True, 'diameter of the cutting part'),
+    ('safety-height', float, 0.012, True, 'height of moves above the top of the stock'),
+    ('tool', ('ball', 'flat', 'vee30', 'vee45', 'vee60'), 'ball', False, 'tool shape; veeN: flanks at N degrees'),
+    ('lace', ('none', 'secondary', 'full'), 'none', False, 'lace bounding: skip flat parts in the second direction; full: also steep parts in the first'),
+    ('contact-angle', float, 45.0, False, 'minimum angle of steep parts for --lace, degrees'),
+    ('roughing-offset', float, 0.0, True, 'roughing allowance above the surface (0: no roughing)'),
+    ('roughing-depth', float, 0.25, True, 'depth of a roughing layer'),
 )
 ABOVE_ZERO = ('pixel-size', 'feed', 'plunge-feed', 'depth', 'step-over', 'tool-diameter', 'safety-height', 'roughing-depth')
 
@@ -84,7 +84,7 @@ def remember(path, settings):
 
 
 def parse(words):
-    parser = Parser(prog=NAME, description='A picture whose brightness is height becomes a program that mills it.')
+    parser = Parser(prog=NAME, description='Converts an image into a milling program. The brightness of a pixel is its height.')
     parser.add_argument('image', metavar='IMAGE', help='PNG, GIF, JPEG or another that Pillow reads')
     for option, kind, _, _, words_of_help in OPTIONS:
         if kind is bool:
@@ -93,9 +93,9 @@ def parse(words):
             parser.add_argument(f'--{option}', choices=kind, help=words_of_help)
         else:
             parser.add_argument(f'--{option}', type=kind, metavar='N', help=words_of_help)
-    parser.add_argument('--remember', action='store_true', help='these settings hold for later calls')
-    parser.add_argument('--forget', action='store_true', help='leave aside what is remembered')
-    parser.add_argument('-o', '--output', metavar='FILE', help='instead of the standard output')
+    parser.add_argument('--remember', action='store_true', help='remember these settings for later calls')
+    parser.add_argument('--forget', action='store_true', help='ignore the remembered settings')
+    parser.add_argument('-o', '--output', metavar='FILE', help='output file (default: standard output)')
     return parser.parse_args(words)
 
 

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs tests of HAL and machines that are folders, in the form of LinuxCNC's.
+"""Runs tests of HAL and machines in LinuxCNC's test format: each test is a folder.
 
 A folder is a test when it has test.hal (run by halrun -f), test.sh (by bash) or test (by itself). It is run in that folder;
-standard output goes to the file result, errors to stderr. It passes when its status is 0 and, where there is checkresult, that
-program's is 0 (with the path of result as its word), else where result is what the file expected has; one with neither has
-nothing to be judged by and fails. A file skip keeps a test from being run: unless it is a program that ends with status 0.
-Where a file xfail stands, the test is expected to fail, and passing is the failure.
+standard output goes to the file result, errors to stderr. It passes when its exit status is 0 and the
+program checkresult, called with the path of result, ends with status 0. Without checkresult, result must equal the file
+expected. A test with neither file fails. A file skip disables a test, unless it is a program that ends with status 0.
+A test with a file xfail is expected to fail; if it passes, that is a failure.
 
-A sampler that has lost samples writes "overrun": the computer was too slow, which says nothing about what is tested. Such a run
-is done again, ten times at most.
+A sampler that loses samples writes "overrun": the computer was too slow. Such a test is repeated, ten times at most.
 """
 import argparse
 import os
@@ -111,10 +110,10 @@ def show_end(count, failed):
 def main(arguments, programs):
     """`programs`: the folder of halrun and the others that tests call; they are found there first."""
     parser = Parser(prog='runtests', description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('folders', nargs='*', default=['.'], help='looked through for tests; default: where you are')
+    parser.add_argument('folders', nargs='*', default=['.'], help='folder to search for tests (default: the current folder)')
     parser.add_argument('-n', action='store_true', help='only list the tests that would run')
-    parser.add_argument('-s', action='store_true', help='stop at the first that fails')
-    parser.add_argument('-v', action='store_true', help='show output and errors of those that fail')
+    parser.add_argument('-s', action='store_true', help='stop at the first failed test')
+    parser.add_argument('-v', action='store_true', help='show output and errors of failed tests')
     parser.add_argument('--patience', type=float, default=120, metavar='S', help='time limit for each test (120)')
     options = parser.parse_args(arguments)
     environment = dict(os.environ, PATH=f'{programs}:{os.environ.get("PATH", os.defpath)}')

@@ -24,12 +24,12 @@ AXIS_KEYS = ('MIN_LIMIT', 'MAX_LIMIT', 'MAX_VELOCITY', 'MAX_ACCELERATION')
 PLAIN_KINEMATICS = ('trivkins', 'gentrivkins', 'gantrykins')
 USAGE = """usage: update_ini [-f] [-d] MACHINE.ini
 
-Brings an INI file of before LinuxCNC 2.8, and the HAL files that it names, to joints and axes.
+Converts an INI file from before LinuxCNC 2.8, and the HAL files that it names, to joints and axes.
 
   -d  ask before anything is changed
-  -f  keep no copies of the files as they were
+  -f  keep no copies of the old files
 
-exit status: 0 done, or nothing to do; 1 failed; 2 wrong usage; 42 the person said no
+exit status: 0 done, or nothing to do; 1 failed; 2 wrong usage; 42 cancelled by the user
 """
 
 
