@@ -366,7 +366,7 @@ STRICTER = {
     'Start point too close to probe point': 'a probe that would not move',
     'G5.1 moves only the axes': 'lines after a G5.1',
     'g5.1 needs': 'lines after a G5.1',
-    'G5.1 needs I or J': 'G5.1 with I0 J0',
+    'G5.1 needs the control point': 'G5.1 with I0 J0',
     'g5 needs the word': 'lines after a G5 that lack P and Q',
     'is for while and do loops': 'break and continue of a repeat, when jumped over',
     'G64 must not be negative': 'G64 with a negative tolerance',

@@ -69,11 +69,11 @@ SETTINGS = [
     ('JOINT', 'MIN_LIMIT', '900', 'above'), ('JOINT', 'HOME', '9999', 'outside'), ('JOINT', 'MAX_VELOCITY', '0', 'above 0'),
     ('JOINT', 'MAX_VELOCITY', 'fast', 'not a number'), ('JOINT', 'MAX_ACCELERATION', '1,5', 'not a number'),
     ('JOINT', 'MIN_FERROR', '5', 'is above'), ('JOINT', 'HOME_LATCH_VEL', '0', None), ('JOINT', 'HOME_SEARCH_VEL', '0', None),
-    ('JOINT', 'HOME_LATCH_VEL', '75', 'faster than'), ('JOINT', 'HOME_SEQUENCE', '7', 'left out'),
-    ('JOINT', 'TYPE', 'ANGULAR', 'unit is wrong'), ('JOINT', 'TYPE', 'ROUND', 'not known'), ('JOINT', 'HOME_SEQUENCE', '5000', 'out of range'),
+    ('JOINT', 'HOME_LATCH_VEL', '75', 'faster than'), ('JOINT', 'HOME_SEQUENCE', '7', 'use consecutive numbers'),
+    ('JOINT', 'TYPE', 'ANGULAR', 'unit is wrong'), ('JOINT', 'TYPE', 'ROUND', 'not a known value'), ('JOINT', 'HOME_SEQUENCE', '5000', 'out of range'),
     ('AXIS', 'MAX_VELOCITY', '900', 'exceeds'), ('AXIS', 'MAX_LIMIT', '900', 'exceeds'), ('AXIS', 'MIN_LIMIT', '-900', 'exceeds'),
     ('AXIS', 'MAX_LIMIT', '-900', 'MIN_LIMIT is above MAX_LIMIT'), ('TRAJ', 'COORDINATES', 'X Y Z A', None), ('TRAJ', 'COORDINATES', 'X Y Q', 'letter'),
-    ('TRAJ', 'LINEAR_UNITS', 'inch', None), ('TRAJ', 'LINEAR_UNITS', 'cm', 'not known'), ('TRAJ', 'DEFAULT_LINEAR_VELOCITY', '900', 'is above'),
+    ('TRAJ', 'LINEAR_UNITS', 'inch', None), ('TRAJ', 'LINEAR_UNITS', 'cm', 'not a known value'), ('TRAJ', 'DEFAULT_LINEAR_VELOCITY', '900', 'is above'),
     ('KINS', 'JOINTS', '2', None), ('KINS', 'JOINTS', '40', 'out of range'), ('KINS', 'KINEMATICS', 'trivkin', None),
     ('EMC', 'VERSION', '1.0', 'older format'), ('EMCMOT', 'SERVO_PERIOD', '1', 'out of range'), ('EMCMOT', 'BASE_PERIOD', '2000000', 'longer than'),
     ('EMCIO', 'TOOL_TABLE', 'no/tools.tbl', 'no folder'), ('RS274NGC', 'PARAMETER_FILE', 'no/mill.var', 'no folder'),
@@ -83,7 +83,7 @@ SETTINGS = [
 ADDED = [
     ('DISPLAY', 'MIN_SPINDLE_OVERRIDE = 3', 'is above'), ('DISPLAY', 'MAX_SPINDLE_0_OVERRIDE = 150', 'may reach 15000 %'),
     ('DISPLAY', 'DEFAULT_LINEAR_VELOCITY = 3000', 'exceeds the maximum jog speed'), ('APPLICATIONS', 'APP = ./nothing -x', 'no program'), ('HAL', 'POSTGUI_HALFILE = gone.hal', 'not found'),
-    ('HAL', 'HALFILE = gone.hal', 'not found'), ('HAL', 'HALFILE', 'no setting'), ('JOINT', 'SCALE = 0', 'no unit'),
+    ('HAL', 'HALFILE = gone.hal', 'not found'), ('HAL', 'HALFILE', 'not a KEY = VALUE line'), ('JOINT', 'SCALE = 0', 'no unit'),
     ('JOINT', 'STEPGEN_MAXACCEL = 10', None), ('RS274NGC', 'REMAP = M400 modalgroup=10 ngc=gone', 'no file'), ('AXIS_X', 'MIN_LIMIT = 5', 'appears twice'),
     ('SPINDLE_0', 'MIN_FORWARD_VELOCITY = 90', None), ('AXIS_A', 'MAX_VELOCITY = 9', 'belongs to an axis'), ('DISPLAY', 'OPEN_FILE = gone.ngc', 'no file'),
 ]

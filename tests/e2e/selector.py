@@ -83,7 +83,7 @@ def check_selector(bench, root):
     bench.run(['millwright', 'select', '--print'], 'samples\nnothing\n999\nq\n')
     again = bench.run(['millwright', 'select', '--print'], 'corexy\n')
     bench.expect(copy.read_text().endswith('# mine\n'), 'a copy is never overwritten')
-    bench.expect('several have that' in again.stdout or str(copy) in again.stdout, f'chosen again: {again.stdout}')
+    bench.expect('several names match' in again.stdout or str(copy) in again.stdout, f'chosen again: {again.stdout}')
     left = bench.run(['millwright', 'select', '--print'], 'q\n')
     bench.expect(left.returncode == 0 and '.ini\n' not in left.stdout.splitlines()[-1], f'left: {left}')
     # The launcher asks only at a terminal.

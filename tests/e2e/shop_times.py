@@ -111,7 +111,7 @@ def check_late_alarm(machine, mails, bodies, now_ms):
     subjects = [one['Subject'] for one in mail]
     expect(subjects == [f'plant/cell/Lathe: Late: {LATE_ALARM}', 'plant/cell/Lathe: Late: Old alarm.', 'plant/cell/Lathe: New alarm.'], 'subjects', subjects)
     texts = [one.get_content() for one in mail]
-    expect('48 h 0 min after' in texts[0] and 'The condition has ended.' in texts[0] and 'No later value has come.' in texts[1] and 'Late' not in texts[2], 'texts', texts)
+    expect('48 h 0 min after' in texts[0] and 'The condition has ended.' in texts[0] and 'No later value was received.' in texts[1] and 'Late' not in texts[2], 'texts', texts)
     expect(all(one['Date'].datetime and one['Message-ID'] for one in mail) and len({one['Message-ID'] for one in mail}) == 3, 'dates and numbers', mails)
     expect(all(one.defects == [] for one in mail), 'mails without defects', [one.defects for one in mail])
 

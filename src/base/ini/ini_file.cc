@@ -193,8 +193,8 @@ class IniParser {
         const std::string_view key = equals == std::string_view::npos ? "" : trim(body.substr(0, equals));
         const bool is_one_word = equals == std::string_view::npos && body.find_first_of(" \t") == body.npos;
         if (is_one_word) {
-            // A line without a value sets nothing, so a warning is enough.
-            sink_.warning("'" + std::string(body) + "' is no setting; the line has no effect", place,
+            // A setting needs a value, so the warning loses nothing.
+            sink_.warning("'" + std::string(body) + "' is not a KEY = VALUE line; it has no effect", place,
                           "expected KEY = VALUE, [SECTION], or a comment that starts with # or ;");
             return;
         }

@@ -213,7 +213,7 @@ bool IniReader::boolean(const IniKey &key, std::string_view section) {
     if (const auto truth = ini_bool(words.empty() ? "" : words[0])) {
         return *truth;
     }
-    sink_.error(label(entry->section, entry->key) + " = '" + entry->value + "' is neither true nor false",
+    sink_.error(label(entry->section, entry->key) + " = '" + entry->value + "' is not a yes or no value",
                 entry->place, "expected YES, TRUE or 1, or NO, FALSE or 0");
     return preset;
 }
@@ -240,8 +240,8 @@ std::string IniReader::choice(const IniKey &key, std::string_view section) {
         }
         all += (all.empty() ? "" : ", ") + one;
     }
-    sink_.error(label(entry->section, entry->key) + " = '" + entry->value + "' is not known", entry->place,
-                "expected one of " + all);
+    sink_.error(label(entry->section, entry->key) + " = '" + entry->value + "' is not a known value",
+                entry->place, "expected one of " + all);
     return std::string(key.text);
 }
 

@@ -48,7 +48,7 @@ struct Refused {
 /// CLI11's error in our words.
 Error number_of_words(const std::string &names, int words) {
     if (words > 1) {
-        return {"option " + spoken(names) + " takes " + std::to_string(words) + " words"};
+        return {"option " + spoken(names) + " takes " + std::to_string(words) + " arguments"};
     }
     return {words == 0 ? "option " + spoken(names) + " takes no value"
                        : "option " + spoken(names) + " needs a value"};
@@ -102,7 +102,7 @@ void CommandLine::number(const std::string &names, const std::string &what, cons
     take(names, 1, what, doc, [&into, low, high](const Words &words) -> Result<> {
         const auto number = parse_double(words[0]);
         if (!number.has_value() || !(*number >= low && *number <= high)) {
-            return fail("'" + words[0] + "' is no number from " + to_text(low) + " to " + to_text(high));
+            return fail("'" + words[0] + "' is not a number from " + to_text(low) + " to " + to_text(high));
         }
         into = *number;
         return {};
@@ -112,7 +112,7 @@ void CommandLine::number(const std::string &names, const std::string &what, cons
 Result<std::int64_t> CommandLine::whole_number(const std::string &text, std::int64_t low, std::int64_t high) {
     const auto number = parse_int(text);
     if (!number.has_value() || *number < low || *number > high) {
-        return fail("'" + text + "' is no whole number from " + std::to_string(low) + " to " +
+        return fail("'" + text + "' is not a whole number from " + std::to_string(low) + " to " +
                     std::to_string(high));
     }
     return *number;
@@ -207,7 +207,7 @@ Result<> CommandLine::parse(const Words &words) const {
     }
     std::ranges::transform(rest, rest.begin(), without_mark);
     if (rest_ == nullptr && !rest.empty()) {
-        return fail("the word '" + rest[0] + "' is one too many");
+        return fail("unexpected argument '" + rest[0] + "'");
     }
     if (rest_ != nullptr) {
         *rest_ = std::move(rest);

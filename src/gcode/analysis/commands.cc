@@ -22,10 +22,10 @@ struct FormatWords {
 
     options::CommandLine line() {
         options::CommandLine line("millwright format [--check | --in-place] PROGRAM.ngc|- ...",
-                                  "Writes programs in one form, without a change of meaning; - is standard "
-                                  "input.\n");
-        line.flag("--check", "only say which ones would change; status 1 when any would", is_check);
-        line.flag("--in-place", "write them back", in_place);
+                                  "Formats programs without changing their meaning; - is standard input.\n");
+        line.flag("--check", "only list the files that would change; exit status 1 if there is one",
+                  is_check);
+        line.flag("--in-place", "overwrite the files", in_place);
         line.rest(programs);
         line.footer("exit status: 0 done, 1 failed, 2 wrong usage\n");
         return line;
@@ -40,10 +40,8 @@ struct ExplainWords {
     options::Words line_words;
 
     options::CommandLine line() {
-        options::CommandLine line("millwright explain [--before LINES] LINE",
-                                  "Says in words what a line of G-code does.\n");
-        line.text("--before", "LINES",
-                  "lines to run first, one after the other with \\n between (default: 'F100 S1000 M3')",
+        options::CommandLine line("millwright explain [--before LINES] LINE", "Explains a line of G-code.\n");
+        line.text("--before", "LINES", "lines to run first, separated by \\n (default: 'F100 S1000 M3')",
                   before);
         line.rest_of_text(line_words);
         line.footer("exit status: 0 done, 1 rejected, 2 wrong usage\n");

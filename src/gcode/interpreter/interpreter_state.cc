@@ -108,9 +108,9 @@ bool canBe(const State &state) {
 
 const char *why_not_packed(const State &state) {
     if (state.comp.isOn() || state.comp.isExit()) {
-        return "cutter compensation is on where it begins";
+        return "cutter compensation is on at its start";
     }
-    return state.spline.order != 0 ? "a NURBS is open where it begins" : nullptr;
+    return state.spline.order != 0 ? "a NURBS is open at its start" : nullptr;
 }
 
 void pack_numbers(Packer &out, const detail::Parameters &parameters) {
@@ -164,7 +164,7 @@ bool InterpreterState::isThreading() const {
 
 std::string InterpreterState::why_no_start() const {
     if (modes.comp.isOn() || modes.comp.isExit()) {
-        return "cutter compensation is on there";
+        return "cutter compensation is on at this line";
     }
     if (modes.spline.order != 0) {
         return "it is in the middle of a NURBS";
@@ -174,7 +174,7 @@ std::string InterpreterState::why_no_start() const {
     if (modes.cycle.running && is_cycle) {
         return "it is in the middle of a canned cycle";
     }
-    return isThreading() ? "moves follow the spindle there" : "";
+    return isThreading() ? "moves are synchronized to the spindle at this line" : "";
 }
 
 Result<std::string> pack(const InterpreterState &state, const detail::Names &names) {

@@ -19,7 +19,7 @@ struct Named {
 constexpr std::array NAMED{
     Named{0x0000, "NUL"},
     Named{0x001b, "escape"},
-    Named{0x001a, "end of file of DOS"},
+    Named{0x001a, "DOS end-of-file character"},
     Named{0x00a0, "no-break space"},
     Named{0x00ad, "soft hyphen"},
     Named{0x00b0, "degree sign"},

@@ -161,9 +161,8 @@ void Program::check_labels() {
                 found.erase(earlier);
             } else if (is_open) {
                 oline.block.error = static_cast<std::uint32_t>(arena_.errors.size());
-                const char *const what = oword.kind == OKind::SUB
-                                             ? "this subroutine is defined already"
-                                             : "this label is in use and not ended since";
+                const char *const what = oword.kind == OKind::SUB ? "this subroutine is defined already"
+                                                                  : "this label is still in use";
                 arena_.errors.push_back(
                     {fmt::format("o{}: {} (line {})", names_.text(oword.label), what, earlier->second->line),
                      oword.column});

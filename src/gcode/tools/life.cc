@@ -37,7 +37,7 @@ Result<LifeBook> LifeBook::parse(std::string_view text, const std::string &path)
         const double tool = is_tool ? amount(std::string_view(words[0]).substr(1)) : -1.0;
         const CutLife life{is_tool ? amount(words[1]) : -1.0, is_tool ? amount(words[2]) : -1.0};
         if (tool < 0 || tool > MOST || tool != std::floor(tool) || life.time_s < 0 || life.length < 0) {
-            return fail("a line of the life of tools is 'T<number> <seconds> <length>'", {path, number, 1});
+            return fail("a tool life line is 'T<number> <seconds> <length>'", {path, number, 1});
         }
         book.add(static_cast<int>(tool), life);
     }

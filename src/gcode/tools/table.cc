@@ -185,7 +185,7 @@ Table Table::parse_leniently(std::string_view text, const std::string &path, dia
     const std::size_t all = reading.skipped.all().size() + reading.doubts.all().size();
     const std::size_t told = first_of(reading.skipped).size() + first_of(reading.doubts).size();
     if (all > told) {
-        sink.warning(fmt::format("{} more lines are skipped or doubtful", all - told), {path, 0, 0});
+        sink.warning(fmt::format("{} more lines have errors or warnings", all - told), {path, 0, 0});
     }
     table.place(reading);
     return table;
@@ -200,8 +200,8 @@ void Table::check(Reading &reading) const {
             reading.doubts.warning("T0 means an empty spindle: a program cannot load this tool", place);
         }
         if (tool.pocketno == 0 && !isRandom()) {
-            reading.doubts.warning(
-                fmt::format("tool {}: P0 means the spindle, not for a pocket", tool.toolno), place);
+            reading.doubts.warning(fmt::format("tool {}: P0 is the spindle, not a pocket", tool.toolno),
+                                   place);
         }
         if (tool.diameter < 0.0) {
             reading.doubts.warning(
@@ -230,11 +230,10 @@ void Table::check_numbers(Reading &reading) {
         ReadTool &earlier = reading.tools[first];
         const bool is_same = isSameTool(earlier.entry, tool.entry);
         reading.doubts.warning(
-            fmt::format(
-                "tool {} is defined in lines {} and {}{}", number, reading.line_of(earlier),
-                reading.line_of(tool),
-                is_same ? ": the first line is used"
-                        : " with different data: the tool cannot be used until one of the lines is deleted"),
+            fmt::format("tool {} is defined in lines {} and {}{}", number, reading.line_of(earlier),
+                        reading.line_of(tool),
+                        is_same ? ": the first line is used"
+                                : " with different data: the tool cannot be used until you delete a line"),
             reading.place_of(tool));
         tool.usable = false;
         earlier.usable = earlier.usable && is_same;
@@ -263,7 +262,7 @@ void Table::check_pockets(Reading &reading) const {
         reading.doubts.warning(
             fmt::format("tools {} (line {}) and {} are in one pocket, P{}{}", earlier.entry.toolno,
                         reading.line_of(earlier), tool.entry.toolno, tool.entry.pocketno,
-                        isRandom() ? ": neither can be used until one of the lines is deleted" : ""),
+                        isRandom() ? ": neither tool can be used until you delete a line" : ""),
             reading.place_of(tool));
         if (isRandom()) {
             earlier.usable = tool.usable = false;
@@ -350,7 +349,7 @@ int Table::owner_of(int pocketno) const {
 
 Result<int> Table::put(ToolEntry entry) {
     if (entry.toolno <= 0) {
-        return fail("a new tool has a number from 1 on");
+        return fail("a new tool needs a number of 1 or more");
     }
     if (index_of_tool(entry.toolno) >= 0) {
         return fail(fmt::format("tool {} is in the tool table already", entry.toolno));
@@ -358,9 +357,8 @@ Result<int> Table::put(ToolEntry entry) {
     if (std::ranges::any_of(lines_, [&](const Line &line) {
             return line.unused.has_value() && line.unused->first == entry.toolno;
         })) {
-        return fail(
-            fmt::format("lines of the tool table that contradict each other name tool {}", entry.toolno), {},
-            "correct them in its file, and read it again");
+        return fail(fmt::format("the tool table has contradictory lines for tool {}", entry.toolno), {},
+                    "correct the lines in the file, then load the tool table again");
     }
     if (entry.pocketno == 0) {
         const bool own_free = entry.toolno <= MAX_POCKET && owner_of(entry.toolno) == NOBODY;
@@ -369,8 +367,8 @@ Result<int> Table::put(ToolEntry entry) {
             ++pocket;
         }
         if (pocket > MAX_POCKET) {
-            return fail(fmt::format("there is no free pocket for tool {}: they end with {}", entry.toolno,
-                                    MAX_POCKET));
+            return fail(fmt::format("there is no free pocket for tool {}: the last pocket is {}",
+                                    entry.toolno, MAX_POCKET));
         }
         entry.pocketno = pocket;
     }

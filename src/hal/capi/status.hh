@@ -31,7 +31,7 @@ template <class Work>
 int with_hal(Work work) {
     Instance *hal = current();
     if (hal == nullptr) {
-        return complain(EINVAL, "this process has joined no HAL instance: call hal_init first");
+        return complain(EINVAL, "this process is not connected to a HAL instance: call hal_init first");
     }
     if constexpr (std::is_same_v<decltype(work(*hal)), Result<>>) {
         return status_of(work(*hal));

@@ -72,8 +72,8 @@ void Reader::check_keys() {
     for (const auto &[key, value] : given_) {
         if (std::ranges::find(known, key) == known.end()) {
             const std::string near = nearest_name(key, known);
-            fault(key, "this is not asked of such a machine" +
-                           (near.empty() ? "" : "; did you mean " + near + "?"));
+            fault(key,
+                  "this machine type has no such key" + (near.empty() ? "" : "; did you mean " + near + "?"));
         }
     }
 }
@@ -83,7 +83,7 @@ void Reader::check(const Question &question) {
     if (question.form == Form::CHOICE) {
         if (std::ranges::find(question.choices, answer) == question.choices.end()) {
             fault(question.key,
-                  fmt::format("'{}' is none of {}", printable(answer), fmt::join(question.choices, ", ")));
+                  fmt::format("'{}' is not one of {}", printable(answer), fmt::join(question.choices, ", ")));
         }
         return;
     }
@@ -99,7 +99,7 @@ void Reader::check(const Question &question) {
     const auto value = parse_double(answer);
     const bool round = value.has_value() && std::floor(*value) == *value;
     if (!value.has_value() || (question.form == Form::WHOLE && !round)) {
-        fault(question.key, fmt::format("'{}' is no {}", printable(answer),
+        fault(question.key, fmt::format("'{}' is not a {}", printable(answer),
                                         question.form == Form::WHOLE ? "whole number" : "number"));
     } else if (*value < question.low || *value > question.high) {
         fault(question.key,
@@ -145,7 +145,7 @@ void Reader::axes() {
         // The first program does not fit into a shorter travel.
         const double shortest = plan_.small(axis, 10);
         if (axis.max - axis.min < shortest) {
-            fault(key + ".max", fmt::format("the travel is {}, and must be {} at least",
+            fault(key + ".max", fmt::format("the travel is {}, but must be at least {}",
                                             to_text(axis.max - axis.min), to_text(shortest)));
         }
         if (plan_.switches != Switches::NONE && axis.home_speed > axis.speed) {
@@ -165,7 +165,7 @@ double Reader::travel_per_turn(const std::string &name) {
     if (transmission == "travel") {
         const double travel = number(name + ".way_per_turn");
         if (travel == 0) {
-            fault(name + ".way_per_turn", "0 moves nothing");
+            fault(name + ".way_per_turn", "a travel of 0 is not possible");
         }
         return travel;
     }

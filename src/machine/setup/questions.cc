@@ -157,7 +157,7 @@ void Asking::spindle() {
     const bool is_foam = isFoam(), hasHardware = !isChosen("drives", "simulated");
     if (!isPlasma()) {
         choice("spindle", is_foam ? "Hot wire" : "Spindle", {"speed", "on_off", "none"},
-               "A speed that programs set is the usual case.");
+               "Most machines set the speed in the program.");
     }
     if (isAsked("spindle") && isChosen("spindle", "speed")) {
         number("spindle.max", is_foam ? "S word of full heat" : "Maximum spindle speed",
@@ -170,7 +170,7 @@ void Asking::spindle() {
                 how.emplace_back("step");
             }
             how.emplace_back("modbus");
-            choice("spindle.drive", "Speed command", std::move(how), "What the board has an output for.");
+            choice("spindle.drive", "Speed command", std::move(how), "The output that the board has.");
         }
     }
     choice("tool_change", "Tool change",
@@ -178,7 +178,7 @@ void Asking::spindle() {
                                  : std::vector<std::string>{"by_hand", "none"},
            "By hand: the machine asks, then waits.");
     if (is_foam) {
-        number("foam.width", "From the plane of X and Y to that of U and V", length(500), unit(),
+        number("foam.width", "Distance from the XY plane to the UV plane", length(500), unit(),
                "The distance between the two ends of the wire.");
     }
 }

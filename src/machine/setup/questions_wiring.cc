@@ -214,7 +214,8 @@ void Asking::spindle_terminals() {
     if (isChosen("spindle.drive", "pwm")) {
         whole("pin.spindle_pwm", "Spindle speed pin (PWM)", 16, "", "A free output.");
         within(1, 17);
-        number("spindle.pwm_hz", "PWM frequency", 100, "Hz", "Enough steps of speed from a parallel port.");
+        number("spindle.pwm_hz", "PWM frequency", 100, "Hz",
+               "Gives enough speed steps with a parallel port.");
         within(1, 5000);
     } else if (isChosen("spindle.drive", "step")) {
         number("spindle.steps_per_turn", "Steps of a spindle revolution", 400, "", "A usual setting.");
@@ -224,7 +225,7 @@ void Asking::spindle_terminals() {
             within(1, 17);
         }
     } else if (is_modbus) {
-        choice("spindle.vfd", "Frequency converter", {"gs2_vfd", "vfdb_vfd"}, "The drivers that exist.");
+        choice("spindle.vfd", "Frequency converter", {"gs2_vfd", "vfdb_vfd"}, "The available drivers.");
         text("spindle.device", "Serial device", "/dev/ttyUSB0", "The first adapter that is plugged in.");
     }
     if (is_modbus || isChosen("spindle.drive", "step")) {

@@ -106,16 +106,16 @@ TEST_F(CommandLineTest, ErrorsNameTheOptionAndTheNearestOne) {
     EXPECT_EQ(error({"--strict=no"}), "option --strict takes no value");
     EXPECT_EQ(error({"--trigger", "a", "above"}), "option --trigger takes 3 words");
     EXPECT_EQ(error({"--trigger", "a", "beside", "3"}), "option --trigger: 'beside' is no kind");
-    EXPECT_EQ(error({"--patience", "-1"}), "option --patience: '-1' is no number from 0.001 to 600");
-    EXPECT_EQ(error({"--patience", "nan"}), "option --patience: 'nan' is no number from 0.001 to 600");
-    EXPECT_EQ(error({"--count", "2.5"}), "option --count: '2.5' is no whole number from 1 to 100");
-    EXPECT_EQ(error({"--count", "101"}), "option --count: '101' is no whole number from 1 to 100");
+    EXPECT_EQ(error({"--patience", "-1"}), "option --patience: '-1' is not a number from 0.001 to 600");
+    EXPECT_EQ(error({"--patience", "nan"}), "option --patience: 'nan' is not a number from 0.001 to 600");
+    EXPECT_EQ(error({"--count", "2.5"}), "option --count: '2.5' is not a whole number from 1 to 100");
+    EXPECT_EQ(error({"--count", "101"}), "option --count: '101' is not a whole number from 1 to 100");
     EXPECT_EQ(error({"--optional-stop", "maybe"}), "option --optional-stop: it is on or off, not 'maybe'");
 }
 
 TEST(CommandLine, WordsWithoutAPlaceAreRefused) {
     const CommandLine line("prog", "");
-    EXPECT_EQ(line.parse({"word"}).error().message, "the word 'word' is one too many");
+    EXPECT_EQ(line.parse({"word"}).error().message, "unexpected argument 'word'");
     EXPECT_TRUE(line.parse({}).has_value());
 }
 

@@ -97,7 +97,7 @@ LinkSettings read_link_section(const SectionSource &source, const LinkKeys &keys
     link.certificate = file_of(source, keys.certificate);
     link.key = file_of(source, keys.key);
     if (link.certificate.empty() != link.key.empty()) {
-        source.sink.error(fmt::format("CERTIFICATE and KEY of [{}] need each other.", section),
+        source.sink.error(fmt::format("CERTIFICATE and KEY of [{}] must both be set.", section),
                           place(source, link.key.empty() ? keys.certificate : keys.key));
     }
     const bool hasCertificates = !link.authorities.empty() || !link.certificate.empty();

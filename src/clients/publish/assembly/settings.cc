@@ -46,7 +46,7 @@ class SectionReader {
         read_agent(settings);
         const bool hasBroker = reader_.find(KEY<"BROKER">) != nullptr;
         if (!hasBroker && !settings.agent_port.has_value()) {
-            sink_.error("Nothing is to be published: neither BROKER nor MTCONNECT_PORT is set in [PUBLISH].",
+            sink_.error("Nothing to publish: [PUBLISH] sets neither BROKER nor MTCONNECT_PORT.",
                         file_.place_of_section(SECTION));
         }
         reader_.report_unknown(false);
@@ -126,7 +126,7 @@ class SectionReader {
             settings.store =
                 fmt::format("{}/millwright/publish/{}", around_.state_folder, settings.node.device);
         } else if (settings.link.has_value()) {
-            sink_.error("There is no home folder for values that wait for the broker.", place(KEY<"STORE">),
+            sink_.error("No home folder found to store values until the broker answers.", place(KEY<"STORE">),
                         "set [PUBLISH]STORE");
         }
     }
@@ -176,7 +176,7 @@ std::optional<Settings> read_settings(const ini::IniFile &file, const Surroundin
                                       diagnostics::Sink &sink) {
     const int before = sink.count_errors();
     if (!file.hasSection(SECTION)) {
-        sink.error(fmt::format("{} has no section [PUBLISH]: what is published, and where, is not set.",
+        sink.error(fmt::format("{} has no section [PUBLISH] with the broker and the values to publish.",
                                file.path()));
         return std::nullopt;
     }

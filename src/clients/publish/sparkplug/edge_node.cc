@@ -137,8 +137,8 @@ void EdgeNode::take_state(std::string_view payload) {
     } else if (!isHostOnline_ && phase_ == Phase::HOST_AWAITED) {
         phase_end_s_ = now_.at_s;  // the host may be at another broker
     } else if (!isHostOnline_ && phase_ == Phase::ONLINE) {
-        leave(
-            fmt::format("The primary host {} is offline. Values wait on the disk.", settings_.primary_host));
+        leave(fmt::format("The primary host {} is offline. Values are stored on the disk.",
+                          settings_.primary_host));
     }
 }
 
@@ -349,7 +349,7 @@ void EdgeNode::step(const Moment &now) {
         // With several brokers the host may be at another broker.
         if (isOver && settings_.brokers > 1) {
             link_.disconnect();
-            lose(fmt::format("The primary host {} is not at this broker.", settings_.primary_host));
+            lose(fmt::format("The primary host {} is not connected to this broker.", settings_.primary_host));
         }
         return;
     case Phase::ONLINE: break;
@@ -357,9 +357,8 @@ void EdgeNode::step(const Moment &now) {
     const auto since_s = delivery_.waiting_since();
     if (since_s.has_value() && now_.at_s - *since_s > settings_.answer_s) {
         link_.drop();
-        lose(delivery_.hasReceipts()
-                 ? fmt::format("The host {} does not confirm values.", settings_.primary_host)
-                 : "The broker does not answer.");
+        lose(delivery_.hasReceipts() ? fmt::format("Host {} does not confirm values.", settings_.primary_host)
+                                     : "The broker does not answer.");
         return;
     }
     if (isRebirthDue_) {

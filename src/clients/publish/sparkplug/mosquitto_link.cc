@@ -43,8 +43,7 @@ Result<> set_tls(mosquitto *client, const LinkSettings &settings) {
     }
     constexpr int VERIFY_PEER = 1;
     const int options = mosquitto_tls_opts_set(client, VERIFY_PEER, nullptr, nullptr);
-    return options == MOSQ_ERR_SUCCESS ? Result<>{}
-                                       : fail("cannot set the options of TLS: " + text_of(options));
+    return options == MOSQ_ERR_SUCCESS ? Result<>{} : fail("cannot set the TLS options: " + text_of(options));
 }
 
 std::deque<LinkEvent> &events_of(void *object) {
@@ -97,7 +96,7 @@ Result<> MosquittoLink::begin(std::size_t broker, const Publication &will) {
     events_.clear();
     client_ = mosquitto_new(settings_.client_id.c_str(), true, &events_);
     if (client_ == nullptr) {
-        return fail(fmt::format("cannot create a client of MQTT: {}", std::strerror(errno)));
+        return fail(fmt::format("cannot create an MQTT client: {}", std::strerror(errno)));
     }
     mosquitto_connect_callback_set(client_, on_connect);
     mosquitto_message_callback_set(client_, on_message);
@@ -110,7 +109,7 @@ Result<> MosquittoLink::begin(std::size_t broker, const Publication &will) {
         code = mosquitto_username_pw_set(client_, settings_.user.c_str(), or_null(settings_.password));
     }
     if (code != MOSQ_ERR_SUCCESS) {
-        return fail("cannot set up the client of MQTT: " + text_of(code));
+        return fail("cannot set up the MQTT client: " + text_of(code));
     }
     if (settings_.isTls) {
         if (auto set = set_tls(client_, settings_); !set.has_value()) {

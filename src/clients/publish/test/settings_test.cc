@@ -78,7 +78,7 @@ TEST(PublishSettings, ReportWhatIsWrongWithItsPlace) {
         {"BROKER = a\nTLS = yes\nCA_FILE = none.pem", "m.ini:4:11: [PUBLISH]CA_FILE: cannot read"},
         {"BROKER = a\nPASSWORD_FILE = none", "m.ini:3:17: [PUBLISH]PASSWORD_FILE: cannot read"},
         {"MTCONNECT_PORT = 70000", "m.ini:2:18: "},
-        {"GROUP = a", "m.ini:1:1: Nothing is to be published"},
+        {"GROUP = a", "m.ini:1:1: Nothing to publish"},
     };
     for (const auto &[text, expected] : cases) {
         const Read found = read("[PUBLISH]\n" + text + "\n");

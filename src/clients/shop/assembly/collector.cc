@@ -109,11 +109,11 @@ void Collector::step(const Moment &now) {
         host_.stored(*stored);
     }
     if (store_.opened() != opened_ || !isStoreWorking()) {
-        leave("The database does not answer. Values wait at the machines.");
+        leave("The database does not answer. The machines store their values.");
         return;
     }
     if (host_.waiting() > settings_.most_readings) {
-        leave("The database is too slow. Values wait at the machines.");
+        leave("The database is too slow. The machines store their values.");
         return;
     }
     give_batch();

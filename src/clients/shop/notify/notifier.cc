@@ -186,7 +186,7 @@ std::string mail_text(const NotifierSettings &settings, const Notification &what
     if (what.late_s > LATE_S) {
         body += fmt::format("Late: the machine sent this {} after the event, received {}. {}\n",
                             duration(what.late_s), what.received,
-                            what.isOver ? "The condition has ended." : "No later value has come.");
+                            what.isOver ? "The condition has ended." : "No later value was received.");
     }
     // The same notification has the same id, so a repeated mail can be recognised.
     const std::string domain =

@@ -55,7 +55,7 @@ std::optional<std::vector<NodeReceipt>> StoreThread::take_stored() {
 
 void StoreThread::set_trouble(const std::string &what) {
     if (what != std::exchange(trouble_, what) && !what.empty()) {
-        report_(fmt::format("Values wait at the machines: {}.", what));
+        report_(fmt::format("The machines store their values: {}.", what));
     }
 }
 
@@ -102,7 +102,7 @@ void StoreThread::run() {
             continue;
         }
         if (!trouble_.empty()) {
-            report_("The database is back.");
+            report_("The database answers again.");
         }
         set_trouble("");
         given_.reset();

@@ -80,7 +80,7 @@ screen::Response ShopPage::history(const screen::Request &request) {
 
 void ShopPage::answer(const screen::Request &request, screen::Reply reply) {
     if (request.method != "GET") {
-        reply(plain(405, "The page only answers GET: it cannot be written to.\n"));
+        reply(plain(405, "The page is read-only: only GET requests are possible.\n"));
     } else if (request.path == "/") {
         reply({.type = "text/html; charset=utf-8", .body = std::string(PAGE_HTML)});
     } else if (request.path == "/page.css") {

@@ -172,7 +172,7 @@ TEST_F(PreviewRun, EndsEndlessLoopsWithAnError) {
     options.statement_budget = 10000;
     EXPECT_EQ(run("o1 while [1]\n#1=[#1+1]\no1 endwhile\nM2\n", options), PreviewEnd::FAILED);
     ASSERT_EQ(sink.count_errors(), 1);
-    EXPECT_NE(sink.all()[0].what.message.find("loop without end"), std::string::npos);
+    EXPECT_NE(sink.all()[0].what.message.find("it may be endless"), std::string::npos);
 }
 
 /// Endless loops are found at once, with or without motion, because nothing changes between passes.
@@ -195,7 +195,7 @@ TEST_F(PreviewRun, FindsLoopsThatRepeatThemselves) {
         Preview check(PreviewMachine{}, world, world, options, {});
         EXPECT_EQ(check.run_text("part.ngc", one.program, errors), PreviewEnd::FAILED);
         ASSERT_EQ(errors.count_errors(), 1) << one.program;
-        EXPECT_NE(errors.all()[0].what.message.find("nothing has changed"), std::string::npos);
+        EXPECT_NE(errors.all()[0].what.message.find("nothing changes"), std::string::npos);
         EXPECT_EQ(errors.all()[0].what.place.line, one.line);
         EXPECT_LT(check.progress().blocks, 5000U);
     }
@@ -231,8 +231,7 @@ TEST_F(PreviewRun, NamesTheLoopThatDoesNotEnd) {
         EXPECT_EQ(check.run_text("part.ngc", one.program, errors), PreviewEnd::FAILED);
         ASSERT_EQ(errors.count_errors(), 1) << one.program;
         const diagnostics::Diagnostic &error = errors.all()[0];
-        EXPECT_NE(error.what.message.find("5000 statements without an action of the machine"),
-                  std::string::npos)
+        EXPECT_NE(error.what.message.find("5000 statements without a machine action"), std::string::npos)
             << error.str();
         EXPECT_EQ(error.what.place.line, one.line) << error.str();
         EXPECT_EQ(error.called_from.size(), static_cast<std::size_t>(one.callers)) << error.str();

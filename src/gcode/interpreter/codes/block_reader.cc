@@ -198,7 +198,7 @@ bool AxisCheck::check(const BlockValues &values, unsigned mask) {
     const char axis = LETTERS[index];
     return values.fault->set(fmt::format("Bad character '{}' used", axis),
                              values.column[static_cast<std::size_t>(index)],
-                             fmt::format("this machine has no axis {}: see [TRAJ]COORDINATES",
+                             fmt::format("this machine has no axis {}: check [TRAJ]COORDINATES",
                                          static_cast<char>(std::toupper(axis))));
 }
 

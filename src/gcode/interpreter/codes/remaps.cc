@@ -100,9 +100,8 @@ Result<> Reader::read_code(std::string_view word) {
     const bool allowed = find_code(code) == nullptr || code >= M(100) ||
                          std::ranges::find(REMAPPABLE, code) != std::end(REMAPPABLE);
     if (!allowed) {
-        out_.refusal =
-            fmt::format("{}: REMAP={}: {} has a meaning that cannot be changed; the line has no effect",
-                        line_.place.str(), line_.text, out_.name);
+        out_.refusal = fmt::format("{}: REMAP={}: {} cannot be remapped; the line has no effect",
+                                   line_.place.str(), line_.text, out_.name);
     }
     return {};
 }
@@ -128,7 +127,7 @@ Result<> Reader::read_argspec(std::string_view text, std::size_t offset) {
             out_.words.push_back({lower, c != lower});
         } else {
             return error(fmt::format("'{}' is not allowed in an argspec", c), offset + i,
-                         "letters of words (upper case: required), @ ^ > and n can");
+                         "use letters of words (upper case: required), @, ^, > and n");
         }
     }
     return {};
@@ -175,8 +174,8 @@ Result<> Reader::read_option(std::string_view word) {
                                 : key == "epilog"                ? &out_.epilog
                                                                  : nullptr;
     if (target == nullptr) {
-        return error(fmt::format("'{}' is not understood", word), offset_of(word),
-                     "known are modalgroup=, argspec=, ngc=, py=, python=, prolog=, epilog=");
+        return error(fmt::format("unknown option '{}'", word), offset_of(word),
+                     "options are modalgroup=, argspec=, ngc=, py=, python=, prolog=, epilog=");
     }
     if (value.empty()) {
         return error(fmt::format("{}= needs a name", key), offset_of(word));
@@ -292,7 +291,7 @@ std::string Remaps::recursion_text(GCode code) const {
     for (const Running &running : running_) {
         const Remap &remap = *running.remap;
         if (remap.code.id == code) {
-            return fmt::format("{} is used in its own procedure, but it only has the remapped meaning",
+            return fmt::format("{} is used in its own remap procedure, but has no built-in meaning",
                                remap.name);
         }
     }

@@ -92,8 +92,8 @@ bool Evaluator::value(const Arena &arena, NodeId id, double &out) const {
             const std::string &name = names_.text(node.a);
             return fault_.set(fmt::format("Named parameter #<{}> not defined", name), node.column,
                               name.starts_with("_hal[")
-                                  ? "there is no such pin, signal or parameter; checks and "
-                                    "rs274 run without HAL, EXISTS checks for it"
+                                  ? "there is no such pin, signal or parameter; checks and rs274 run without "
+                                    "HAL: use EXISTS before reading it"
                                   : "");
         }
         out = *found;

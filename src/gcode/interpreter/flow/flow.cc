@@ -296,7 +296,7 @@ bool Flow::note_turn(const LoopTurn &turn) {
         return true;
     }
     executor_.fault.line = turn.first;
-    return executor_.fault.set("This is a loop without end: nothing has changed from one pass to the next", 0,
+    return executor_.fault.set("Endless loop: nothing changes between two passes", 0,
                                "in a check, inputs, HAL pins and probes stay as they are: a loop that waits "
                                "for one of them must end "
                                "when #<_task> is 0");
@@ -331,13 +331,11 @@ Step Flow::fail_budget() {
     executor_.begin_block();
     executor_.fault = {};
     executor_.fault.set(
-        loop
-            ? fmt::format("This loop has run for {} (now at {}); is it a loop without end?", taken, where)
-            : fmt::format("The program has run for {} since it came to line {}; is there a loop without end?",
-                          taken, budget_.furthest_line()));
-    executor_.fault.hint =
-        "correct the condition that ends it; if it is right, allow more statements (millwright check "
-        "--statements N, 0 for any number)";
+        loop ? fmt::format("This loop has run for {} (now at {}); it may be endless", taken, where)
+             : fmt::format("The program has run for {} since line {}; check for an endless loop", taken,
+                           budget_.furthest_line()));
+    executor_.fault.hint = "check the condition that ends the loop; if it is correct, allow more statements "
+                           "(millwright check --statements N; 0: no limit)";
     continuable_ = false;
     executor_.fault.line = loop ? loop->first : 0;
     return fail_block();

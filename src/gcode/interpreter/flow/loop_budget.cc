@@ -64,7 +64,7 @@ std::string LoopBudget::spend() {
     constexpr double S_PER_HOUR = 3600.0;
     spent_ = true;
     if (idle_ > 0 && taken_idle_ > idle_) {
-        return fmt::format("{} statements without an action of the machine", idle_);
+        return fmt::format("{} statements without a machine action", idle_);
     }
     if (seconds_ > 0 && taken_seconds_ > seconds_) {
         return fmt::format("{:g} hours of machine time", seconds_ / S_PER_HOUR);

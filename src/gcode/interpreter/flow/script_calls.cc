@@ -276,7 +276,7 @@ std::optional<std::string> ScriptCalls::refusal(const Scripts &scripts) const {
         return "the function of a named parameter cannot execute blocks";
     }
     if (scripts.depth() == 0) {
-        return "nothing can be executed now: the program was ended";
+        return "cannot execute: the program has ended";
     }
     if (end_due_) {
         return "the program has ended: a block executed before was M2 or M30";

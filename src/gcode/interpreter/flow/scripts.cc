@@ -74,7 +74,7 @@ Result<> Scripts::load(const Settings &settings, const Remaps &remaps, const Bui
     }
     for (const Remap &remap : remaps.all()) {
         if (remap.needsScripts() && wanted.top_level.empty()) {
-            return fail(fmt::format("REMAP of {} names a Python function, but [PYTHON]TOPLEVEL is missing",
+            return fail(fmt::format("REMAP of {} uses a Python function, but [PYTHON]TOPLEVEL is missing",
                                     remap.name),
                         remap.place, "TOPLEVEL names the script that imports the module remap");
         }

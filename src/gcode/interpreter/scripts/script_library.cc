@@ -48,8 +48,8 @@ std::string script_library() {
 }
 
 Result<std::unique_ptr<ScriptHost>> open_script_host(const std::string &file) {
-    constexpr char HINT[] = "install the Python part of Millwright (it is built when python3-dev and "
-                            "pybind11-dev are there)";
+    constexpr char HINT[] =
+        "install the Python part of Millwright (built only if python3-dev and pybind11-dev are installed)";
     if (::access(file.c_str(), R_OK) != 0) {
         return fail(fmt::format("{} is not installed", file), {}, HINT);
     }
@@ -62,7 +62,7 @@ Result<std::unique_ptr<ScriptHost>> open_script_host(const std::string &file) {
     const auto make = reinterpret_cast<ScriptHostFactory>(::dlsym(library, SCRIPT_HOST_SYMBOL));
     ScriptHost *host = nullptr;
     if (make == nullptr || make(SCRIPT_HOST_VERSION, &host) == 0 || host == nullptr) {
-        return fail(fmt::format("{} is of another version of Millwright", file), {}, HINT);
+        return fail(fmt::format("{} belongs to another version of Millwright", file), {}, HINT);
     }
     return std::unique_ptr<ScriptHost>(host);
 }

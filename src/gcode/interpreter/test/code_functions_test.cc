@@ -318,7 +318,7 @@ TEST(SwitchCodes, CoolantGoesOnOneByOneAndOffTogether) {
 TEST(SwitchCodes, WaitingForAnInputIsAWaitingPoint) {
     CodeRig p;
     EXPECT_FALSE(p.run(M(66), {{'p', 1}, {'l', 3}}));
-    EXPECT_EQ(p.fault.message, "M66 that waits needs a timeout Q above 0 seconds");
+    EXPECT_EQ(p.fault.message, "M66 with L1 to L4 needs a timeout Q above 0 seconds");
     EXPECT_FALSE(p.awaited.is_input);
     ASSERT_TRUE(p.run(M(66), {{'p', 1}, {'l', 3}, {'q', 2}}));
     EXPECT_TRUE(p.awaited.is_input);

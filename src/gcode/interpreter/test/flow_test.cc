@@ -113,11 +113,9 @@ TEST(Flow, BrokenOWordsAreNamedWhereTheyStand) {
         const char *program, *error;
         int line;
     } cases[] = {
-        {"o1 if [1]\no1 if [1]\no1 endif\no1 endif\n",
-         "o1: this label is in use and not ended since (line 1)", 2},
-        {"o1 repeat [2]\no1 if [1]\no1 endif\no1 endrepeat\n", "in use and not ended since (line 1)", 2},
-        {"o1 do\no2 repeat [1]\no1 do\no1 while [0]\no2 endrepeat\no1 while [0]\n", "in use and not ended",
-         3},
+        {"o1 if [1]\no1 if [1]\no1 endif\no1 endif\n", "o1: this label is still in use (line 1)", 2},
+        {"o1 repeat [2]\no1 if [1]\no1 endif\no1 endrepeat\n", "this label is still in use (line 1)", 2},
+        {"o1 do\no2 repeat [1]\no1 do\no1 while [0]\no2 endrepeat\no1 while [0]\n", "still in use", 3},
         {"o1 sub\no1 endsub\no1 sub\no1 endsub\n", "o1: this subroutine is defined already (line 1)", 3},
         {"o1 sub\n#1=2\no1 endsub G0\n", "Only a comment may follow here", 3},
         {"o1 if [0]\n#1=2\no1 elsif [1]\n#1=3\no1 endif\n", "", 3},

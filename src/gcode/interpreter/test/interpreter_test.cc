@@ -55,7 +55,7 @@ TEST(Interpreter, ModesSavedByABlockThatFailsAreNotKept) {
         ASSERT_EQ(fail_with(machine, code), Step::FAILED);
         EXPECT_EQ(machine.interpreter->execute("M72"), Step::FAILED) << code;
         EXPECT_EQ(machine.interpreter->error().what.message,
-                  "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 dropped it");
+                  "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 invalidated it");
     }
 }
 

@@ -196,7 +196,7 @@ TEST(PythonRemap, AbortDuringAYieldClosesTheScriptAndLeavesTheInterpreterSound) 
     ASSERT_EQ(it.run(";py,emccanon = __import__('emccanon'); emccanon.MESSAGE(remap.log[0])\nG0 X1\n"),
               Step::PROGRAM_END)
         << it.error();
-    EXPECT_EQ(it.story()[0], "MESSAGE(\"nothing can be executed now: the program was ended\")");
+    EXPECT_EQ(it.story()[0], "MESSAGE(\"cannot execute: the program has ended\")");
     EXPECT_EQ(it.story().size(), 2u);
 }
 

@@ -267,7 +267,7 @@ class SearchTest : public testing::Test {
 
 TEST_F(SearchTest, RefusalsNameTheNearestLineThatCan) {
     const std::string comp = "G21 F600\nG0 X0 Y0 Z5\nG41.1 D2 G1 X5\nY10\nX20\nG40 Y20\nG0 X30\nM2\n";
-    EXPECT_EQ(refusal(comp, 5), "no program can start at line 5: cutter compensation is on there; the "
+    EXPECT_EQ(refusal(comp, 5), "no program can start at line 5: cutter compensation is on at this line; the "
                                 "nearest line before it that can "
                                 "is 3");
     EXPECT_EQ(refusal(comp, 3), "");

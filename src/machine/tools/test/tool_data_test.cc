@@ -203,14 +203,13 @@ TEST_F(ToolDataTest, ARandomChangersPocketsAreOneToolEach) {
         }
     }
     EXPECT_EQ(tools.add(tool_of(5000, 0)).error().message,
-              "there is no free pocket for tool 5000: they end with 1000");
+              "there is no free pocket for tool 5000: the last pocket is 1000");
 }
 
 TEST_F(ToolDataTest, LinesThatContradictEachOtherAreNotAddedToNorLeftBehind) {
     const std::string before = "T1 P1 D3\nT1 P2 D4\nT2 P3 D5 ;first\nT2 P3 D5 ;again\nT3 P4\n";
     task::ToolStore &tools = open_file(before);
-    EXPECT_EQ(tools.add(tool_of(1, 9)).error().message,
-              "lines of the tool table that contradict each other name tool 1");
+    EXPECT_EQ(tools.add(tool_of(1, 9)).error().message, "the tool table has contradictory lines for tool 1");
     EXPECT_EQ(tools.add(tool_of(8, 2)).error().message, "pocket 2 is taken by tool 1");
     EXPECT_EQ(text("tool.tbl"), before);
     ASSERT_TRUE(tools.remove(tools.index_of_tool(2)).has_value());

@@ -131,8 +131,7 @@ bool Compensation::join(const CompPlace &place, CompElement &next, bool rapid, s
     case CornerKind::BLOCKED: break;
     }
     return fault.set(fmt::format("{} in concave corner cannot be reached by the tool without gouging", what),
-                     0,
-                     "the moves at the corner are too short or too near to each other for this tool radius");
+                     0, "the moves at the corner are too short or too close together for this tool radius");
 }
 
 bool Compensation::move_straight(const CompPlace &place, bool rapid, const Pose &end, CanonQueue &canon,
@@ -188,8 +187,7 @@ bool Compensation::enter_by_arc(const CompPlace &place, const ArcPlan &arc, Comp
     const bool inside = (arc.rotation > 0) == (side_ == CompSide::LEFT);
     const bool is_same_side = (along > TINY) == inside && std::fabs(along) > TINY;
     if (!is_same_side) {
-        return fault.set(
-            "This arc cannot be the entry to cutter radius compensation: the tool is too large for it");
+        return fault.set("The entry arc of cutter radius compensation is too small for the tool");
     }
     next.start = from;
     next.centre = sum(next.end, normal, dot(chord, chord) / (2.0 * along));

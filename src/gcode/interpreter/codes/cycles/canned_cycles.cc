@@ -123,8 +123,8 @@ bool check_cycle(GCode code, const BlockValues &values, State &state, const Code
         return values.fail(fmt::format("Spindle not turning in {}", code_name(code)));
     }
     if ((code == G(84) && spindle.direction < 0) || (code == G(74) && spindle.direction > 0)) {
-        return values.fail(fmt::format("The spindle turns the wrong way for {}: {} first", code_name(code),
-                                       code == G(84) ? "M3" : "M4"));
+        return values.fail(fmt::format("The spindle turns in the wrong direction for {}: program {} first",
+                                       code_name(code), code == G(84) ? "M3" : "M4"));
     }
     return true;
 }

@@ -38,15 +38,15 @@ std::expected<bool, std::string> choose_facing(const LatheRequest &request, std:
     const bool turnable = isMonotonic(in_frame(request.profile, turned), tolerance);
     const bool faceable = isMonotonic(in_frame(request.profile, faced), tolerance);
     if (!turnable && !faceable) {
-        return std::unexpected("is not monotonic: it goes back along both Z and X");
+        return std::unexpected("is not monotonic: it reverses along both Z and X");
     }
     if (!turnable || !faceable) {
         return !turnable;
     }
     const bool distance_used = request.distance > 0.0 || request.end_distance > 0.0;
     if (!roughed && distance_used && turned.turn(1) != faced.turn(1)) {
-        return std::unexpected("could be one of G71 or of G72, which puts the distance D on opposite sides: "
-                               "rough it in this program, or give no D and E");
+        return std::unexpected("fits G71 and G72, whose allowances D have opposite sides: rough it in this "
+                               "program, or program no D and E");
     }
     return roughed.value_or(false);
 }
@@ -59,10 +59,10 @@ std::expected<FramedProfile, std::string> framed_profile(const Profile &raw, boo
     framed.frame = frame_of(raw, isFacing);
     framed.profile = in_frame(raw, framed.frame);
     if (!isMonotonic(framed.profile, tolerance)) {
-        return std::unexpected(fmt::format("is not monotonic: it goes back along {}", isFacing ? "X" : "Z"));
+        return std::unexpected(fmt::format("is not monotonic: it reverses along {}", isFacing ? "X" : "Z"));
     }
     if (!round_corners(framed.profile) || !isMonotonic(framed.profile, tolerance)) {
-        return std::unexpected("has a corner that its fillet A or chamfer C does not fit");
+        return std::unexpected("has a corner that is too small for its fillet A or chamfer C");
     }
     drop_short(framed.profile, tolerance / 10.0);
     return framed;
@@ -128,13 +128,12 @@ bool refuse_side(const LatheRequest &request, const CutFrame &cut, std::string_v
             "The profile of {} goes from {}{:g} to {}{:g}, and the cycle starts between them at {}{:g}", name,
             axis, low, axis, high, axis, start),
         0,
-        cut.isFacing
-            ? fmt::format("start at Z{:g} or more for a front face, at Z{:g} or less for a back face: "
-                          "move there before the cycle, or give it as the cycle's Z",
-                          high, low)
-            : fmt::format("start at X{:g} or more for an outside, at X{:g} or less for a bore: move "
-                          "there before the cycle, or give it as the cycle's X",
-                          high, low));
+        cut.isFacing ? fmt::format("start at Z{:g} or more for a front face, at Z{:g} or less for a back "
+                                   "face: move there before the cycle, or program it as Z of the cycle",
+                                   high, low)
+                     : fmt::format("start at X{:g} or more for an outside, at X{:g} or less for a bore: move "
+                                   "there before the cycle, or program it as X of the cycle",
+                                   high, low));
 }
 
 /// Sends a move of the cycle, compensated when G41 or G42 is on.
@@ -198,7 +197,7 @@ Effect begin_lathe_cycle(GCode code, const BlockValues &values, State &state, Co
         {state.comp.isOn() && code != G(70), 'q', "cannot be used with cutter radius compensation on"},
         {values.has('@') || values.has('^'), 'q', "takes no polar words"},
         {state.feed_mode == FeedMode::INVERSE_TIME, 'q', "cannot be used with inverse time feed"},
-        {state.feed == 0.0, 'q', "needs a feed: give F first"},
+        {state.feed == 0.0, 'q', "needs a feed: program F first"},
         {request.roughing.increment <= 0.0, 'i', "needs a cutting increment I above 0"},
         {request.distance < 0.0, 'd', "needs a distance D of 0 or more"},
         {request.end_distance < 0.0, 'e', "needs a last distance E of 0 or more"},

@@ -178,7 +178,7 @@ Effect keep_modes(GCode code, const BlockValues &values, State &state, CodeParts
     const State *const saved = saved_modes.saved();
     if (saved == nullptr) {
         return values.fail(
-            "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 dropped it");
+            "M72 has nothing to restore: there is no M70 or M73 at this level, or M71 invalidated it");
     }
     return restore_modes(*saved, state, parts, *values.fault);
 }

@@ -113,8 +113,8 @@ Effect move_with_spindle(GCode code, const BlockValues &values, State &state, Co
     }
     if (!(values.at('k') > 0.0)) {
         return values.fail(fmt::format("The pitch K of {} must be greater than 0", name), 'k',
-                           "the sign of K does not choose the hand of the thread: the end point and the "
-                           "spindle direction do");
+                           "the sign of K does not set the hand of the thread: the end point and the spindle "
+                           "direction set it");
     }
     constexpr double SAME_SPEED = 1.0;
     const double scale = values.at('i', SAME_SPEED);

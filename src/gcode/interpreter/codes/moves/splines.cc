@@ -100,7 +100,7 @@ Effect move_along_quadratic(GCode code, const BlockValues &values, State &state,
     }
     const double i = values.has('i') ? values.at('i') : 0.0, j = values.has('j') ? values.at('j') : 0.0;
     if (i == 0.0 && j == 0.0) {
-        return values.fail("G5.1 needs I or J other than 0: where its control point lies");
+        return values.fail("G5.1 needs the control point: I or J other than 0");
     }
     const Pose end = target(values, state);
     const double x = state.position[geometry::AXIS_X], y = state.position[geometry::AXIS_Y];
@@ -128,7 +128,7 @@ Effect add_nurbs_point(GCode code, const BlockValues &values, State &state, Code
         }
         if (!opening || order < 2 || order > MAX_NURBS_ORDER) {
             return values.fail(opening ? fmt::format("The order L of a NURBS is 2 to {}", MAX_NURBS_ORDER)
-                                       : "Program the order L once, in the G5.2 that opens the block",
+                                       : "Program the order L only once, in the first G5.2 of the NURBS",
                                'l');
         }
         state.spline.order = order;
@@ -166,10 +166,9 @@ Effect end_nurbs(GCode, const BlockValues &values, State &state, CodeParts &part
         return values.fail("G5.3 ends a NURBS, and there is no G5.2 before it");
     }
     if (state.spline.count < static_cast<std::size_t>(state.spline.order)) {
-        return values.fail(
-            fmt::format("A NURBS of order {} needs at least {} control points, the start among them; "
-                        "there are {}",
-                        state.spline.order, state.spline.order, state.spline.count));
+        return values.fail(fmt::format(
+            "A NURBS of order {} needs at least {} control points, including the start; there are {}",
+            state.spline.order, state.spline.order, state.spline.count));
     }
     parts.control_points.resize(state.spline.count);
     NurbsFeed nurbs{parts.control_points, state.spline.order, state.spline.end};

@@ -62,7 +62,7 @@ bool polar_target(const BlockValues &values, const State &state, Pose &end) {
                second = geometry::AXIS_LETTERS_LOWER[axes.second];
     const char word = values.has('@') ? '@' : '^';
     if (state.plane != Plane::XY) {
-        return values.fail("Polar words @ and ^ are for G17 alone", word);
+        return values.fail("Polar words @ and ^ are only possible in G17", word);
     }
     if (values.has(first) || values.has(second)) {
         return values.fail("Polar words @ and ^ cannot be combined with the axis words of their plane", word);
@@ -71,7 +71,7 @@ bool polar_target(const BlockValues &values, const State &state, Pose &end) {
     const bool at_origin = x == 0.0 && y == 0.0;
     if (at_origin && (!values.has('^') || state.incremental)) {
         return values.fail(
-            "There is no angle at the origin to continue from: polar words need ^ in absolute mode here",
+            "The current point is the origin and has no angle: polar words need ^ in absolute mode here",
             word);
     }
     constexpr double DEGREE = std::numbers::pi / 180.0;
@@ -124,7 +124,7 @@ bool check_feed(const BlockValues &values, std::string_view code, const State &s
 bool check_feed_per_revolution(const BlockValues &values, const State &state) {
     const SpindleState &spindle = state.spindles[static_cast<std::size_t>(state.active_spindle)];
     if (state.feed_mode == FeedMode::UNITS_PER_REVOLUTION && spindle.speed == 0.0) {
-        return values.fail("The feed is per revolution (G95) and the spindle speed is 0: give S first");
+        return values.fail("The feed is per revolution (G95) and the spindle speed is 0: program S first");
     }
     return true;
 }

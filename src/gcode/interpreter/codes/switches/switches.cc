@@ -94,13 +94,13 @@ Effect wait_for_input(GCode, const BlockValues &values, State &state, CodeParts 
         return values.fail("The wait mode L of M66 must be 0 to 4", 'l');
     }
     if (analog && kind != 0) {
-        return values.fail("An analog input is read at once: only L0 is possible with E", 'l');
+        return values.fail("Analog inputs cannot wait: only L0 is possible with E", 'l');
     }
     if (values.at('q', 0.0) < 0.0) {
         return values.fail("The timeout Q of M66 must not be negative", 'q');
     }
     if (kind != 0 && values.at('q', 0.0) == 0.0) {
-        return values.fail("M66 that waits needs a timeout Q above 0 seconds");
+        return values.fail("M66 with L1 to L4 needs a timeout Q above 0 seconds");
     }
     if (state.comp.isOn()) {
         return values.fail("Cannot wait for an input with cutter radius compensation on");
