@@ -166,9 +166,8 @@ Result<std::string> runtime_folder() {
         return fail("runtime folder " + folder + ": " + std::strerror(errno));
     }
     if (!S_ISDIR(status.st_mode) || status.st_uid != ::getuid() || (status.st_mode & 077) != 0) {
-        return fail("runtime folder " + folder +
-                        " must be a folder of this user that no other user may enter",
-                    {}, "remove it, or set XDG_RUNTIME_DIR");
+        return fail("runtime folder " + folder + " must belong to this user and be closed to other users", {},
+                    "remove it, or set XDG_RUNTIME_DIR");
     }
     return folder;
 }

@@ -138,7 +138,7 @@ Result<SharedMemory> SharedMemory::create(const std::string &name, std::size_t s
                                           const SharedLayout &layout) {
     const std::string path = '/' + name;
     if (remove_stale(name) < 0) {
-        return fail(why(name) + "cannot look through " + SHM_FOLDER);
+        return fail(why(name) + "cannot search " + SHM_FOLDER);
     }
     const int fd = ::shm_open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     const auto pid_of = [](const void *base) { return static_cast<const Header *>(base)->owner.pid; };

@@ -51,7 +51,7 @@ class Steps:
             time.sleep(0.05)
 
     def pin(self, name):
-        """Nothing, because the realtime process has ended."""
+        """Nothing: the realtime process has ended."""
         done = subprocess.run([halcmd, 'getp', name], capture_output=True, text=True, check=False, env=self.env, timeout=10)
         return done.stdout.strip() if done.returncode == 0 else None
 

@@ -298,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(
                           "the state at line 5 depends on the HAL value motion.in-position in line 3; the "
                           "nearest line before it that can is 3"},
                       Doubtful{"Table", "G21 F600\nG0 Z5\nG10 L0\nG1 X20\nG1 X0\nM2\n", 5,
-                               "the state at line 5 depends on a tool table that is read again (G10 L0) in "
+                               "the state at line 5 depends on the reloaded tool table (G10 L0) in "
                                "line 3; the nearest line before it that can is 3"}),
     [](const auto &one) { return one.param.name; });
 

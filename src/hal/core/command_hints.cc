@@ -23,7 +23,7 @@ constexpr Absent ABSENT[] = {
      "(hal_parport) and GPIO lines (hal_gpio, hal_pi_gpio)"},
     {" hy_vfd hy_gt_vfd pi500_vfd svd-ps_vfd vfs11_vfd wj200_vfd thermistor sendkeys "
      "xhc-hb04 xhc-whb04b-6 xhc-hb04-accels monitor-xhc-hb04 ",
-     "that of an installed LinuxCNC runs on this HAL as it is: start the machine by script/screens "
+     "the program of an installed LinuxCNC runs on this HAL unmodified: start the machine by script/screens "
      "(millwright-screens)"},
     {" mitsub_vfd pmx485 pmx485-test sim-torch z_level_compensation scorbot-er-3 "
      "qtplasmac_gcode qtplasmac-cfg2prefs qtplasmac-materials qtplasmac-plasmac2qt hal_bridge ",
@@ -53,13 +53,12 @@ constexpr Absent ABSENT[] = {
      "it is a part of the machine and is not started separately: use 'millwright start MACHINE.ini'"},
     {" halrmt linuxcnclcd ", "it is not available in Millwright; linuxcncrsh, halcmd and the Python modules "
                              "linuxcnc and hal control a machine from other programs"},
-    {" classicladder classicladder_rt ", "there are no ladders yet; the components of logic (and2, or2, "
-                                         "lut5, estop_latch, timedelay) or one of your own by "
-                                         "halcompile do the same"},
+    {" classicladder classicladder_rt ", "ladder logic is not available; use logic components (and2, or2, "
+                                         "lut5, estop_latch, timedelay) or your own component (halcompile)"},
     {" homecomp axistest hal_lib tp boss_plc joint_axis_mapper histobinstream latencybinstream "
      "timedeltalatch "
      "xhc_hb04_util ",
-     "it is not there; halcompile makes it from its .comp file, where that is at hand"},
+     "the module is not installed; halcompile builds it from its .comp file"},
     {" tool_watch tool_mmap_read ",
      "the tool table is in the status: linuxcnc.stat().tool_table, 'millwright ui', linuxcncrsh"},
 };

@@ -120,7 +120,7 @@ Result<std::unique_ptr<Instance>> Instance::attach(std::string_view name) {
                                                   : memory.error().hint);
     }
     if (!runtime::isAlive(memory->owner())) {
-        return refuse(ENOENT, fmt::format("HAL instance '{}': its realtime process is gone", name));
+        return refuse(ENOENT, fmt::format("HAL instance '{}': its realtime process has ended", name));
     }
     InstanceOptions options;
     options.name = name;

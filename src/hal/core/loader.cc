@@ -328,7 +328,7 @@ Result<> Loader::run_main(Module &module) {
     auto *main = reinterpret_cast<int (*)()>(::dlsym(module.handle, "rtapi_app_main"));
     if (main == nullptr) {
         return refuse(ENOEXEC,
-                      fmt::format("{} is no realtime module: it has no rtapi_app_main", module.file));
+                      fmt::format("{} is not a realtime module: it has no rtapi_app_main", module.file));
     }
     const int first_id = hal_.components().next_id();
     LogTap tap(hal_.log());

@@ -36,7 +36,7 @@ void Planners::run(void *argument, std::int64_t period_ns) {
 Result<int> Planners::create(const std::string &name, std::int64_t period_ns, const PlannerCode &code) {
     Guard guard(segment_);
     if (scheduler_ == nullptr) {
-        return refuse(EINVAL, "planners can only be made in the realtime process");
+        return refuse(EINVAL, "planners can only be created in the realtime process");
     }
     auto runner = std::make_unique<Runner>(instance_, code, last_id_ + 1);
     runtime::PeriodicSpec spec;

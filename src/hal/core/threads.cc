@@ -46,7 +46,7 @@ Result<Use> find_use(const Segment &segment, std::string_view function, std::str
 /// Inserts into a list; init functions precede the others.
 Result<> insert_entry(FunctionList &list, const ListEntry &entry, int position, std::string_view thread) {
     if (list.count == THREAD_FUNCTIONS) {
-        return refuse(ENOMEM, fmt::format("thread '{}' has {} functions, no more fit", thread, list.count));
+        return refuse(ENOMEM, fmt::format("thread '{}' has {} functions, the maximum", thread, list.count));
     }
     auto *end = list.entries.begin() + list.count;
     const auto inits = static_cast<int>(
@@ -80,8 +80,7 @@ Result<> add_to_thread(Segment &segment, std::string_view function, std::string_
     FunctRecord &funct = *use->funct;
     if (funct.users > 0 && !funct.reentrant) {
         return refuse(
-            EINVAL, fmt::format("function '{}' is in a thread already and may be called from one place only",
-                                function));
+            EINVAL, fmt::format("function '{}' is in a thread already and can only be added once", function));
     }
     const ListEntry entry{funct.function, funct.argument, segment.offset_of(&funct), runs == Runs::ONCE};
     auto added = change_list(segment, *use->thread,
@@ -168,7 +167,7 @@ Threads::~Threads() = default;
 Result<> Threads::create(std::string_view name, std::int64_t period_ns) {
     Guard guard(segment_);
     if (scheduler_ == nullptr) {
-        return refuse(EPERM, "threads can only be made in the realtime process", "use loadrt threads");
+        return refuse(EPERM, "threads can only be created in the realtime process", "use loadrt threads");
     }
     if (period_ns < 1000 || period_ns > 10'000'000'000) {
         return refuse(EINVAL, fmt::format("thread '{}': a period of {} ns is outside of 1000 to 10000000000",

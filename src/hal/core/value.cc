@@ -24,7 +24,7 @@ constexpr std::array TYPES{TypeRow{Type::BIT, "bit", "bool"},   TypeRow{Type::FL
                            TypeRow{Type::U64, "u64", "uint"}};
 
 std::unexpected<Error> not_a(Type type, std::string_view text, const char *expected) {
-    return fail(fmt::format("'{}' is no value of type {}: expected {}", text, type_name(type), expected));
+    return fail(fmt::format("'{}' is not a value of type {}: expected {}", text, type_name(type), expected));
 }
 
 std::optional<bool> parse_bit(std::string_view text) {
@@ -55,7 +55,7 @@ Result<Type> parse_type(std::string_view name) {
             return row.type;
         }
     }
-    return fail(fmt::format("'{}' is no HAL type: expected bit, float, s32, u32, s64, u64 or port", name));
+    return fail(fmt::format("'{}' is not a HAL type: expected bit, float, s32, u32, s64, u64 or port", name));
 }
 
 const char *dir_name(Dir dir) noexcept {

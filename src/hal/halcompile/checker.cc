@@ -91,8 +91,8 @@ class Checker {
             sink_.error(fmt::format("component '{}' is in a file named {}", component_.name, base_name),
                         component_.place, "the names of component and file must be the same");
         } else if (component_.name.find_first_of("-.#") != std::string::npos) {
-            sink_.error(fmt::format("'{}' is no name for a component", component_.name), component_.place,
-                        "it takes letters, digits and _");
+            sink_.error(fmt::format("'{}' is not a valid component name", component_.name), component_.place,
+                        "use letters, digits and _");
         }
         if (!component_.has_code) {
             sink_.error("there is no ;;", {component_.file, 0, 0},
@@ -118,12 +118,12 @@ class Checker {
         }
         if (known->kind == OptionKind::SWITCH && !parse_switch(option.value)) {
             sink_.error(fmt::format("option {} is '{}'", option.name, option.value), option.place,
-                        "it takes yes or no");
+                        "use yes or no");
         }
         const auto number = parse_int(option.value);
         if (known->kind == OptionKind::NUMBER && (!number || *number < 0 || *number > 10000)) {
             sink_.error(fmt::format("option {} is '{}'", option.name, option.value), option.place,
-                        "it takes a number from 0 to 10000");
+                        "use a number from 0 to 10000");
         }
     }
 
@@ -134,11 +134,11 @@ class Checker {
         }
         const auto [at, isNew] = names_.emplace(name, place);
         if (!isNew) {
-            sink_.error(fmt::format("the name '{}' is taken already", name), place,
+            sink_.error(fmt::format("the name '{}' is already in use", name), place,
                         fmt::format("by the declaration in line {}", at->second.line));
         }
         if (has(C_WORDS, name)) {
-            sink_.error(fmt::format("'{}' is a word of C", name), place,
+            sink_.error(fmt::format("'{}' is a C keyword", name), place,
                         fmt::format("call the {} {}_; HAL shows it without the trailing _", what, name));
         }
         const bool of_setup =
@@ -149,7 +149,7 @@ class Checker {
                         fmt::format("call the {} {}_", what, name));
         }
         if (name == "personality" && component_.hasPersonality()) {
-            sink_.error("the name 'personality' is that of the instance's personality here", place);
+            sink_.error("the name 'personality' is reserved for the personality of the instance", place);
         }
     }
 
@@ -166,7 +166,7 @@ class Checker {
         }
         if (has_hash &&
             item.name.find('#', item.name.find_first_not_of('#', item.name.find('#'))) != std::string::npos) {
-            sink_.error(fmt::format("'{}' has # in two places", item.name), item.place);
+            sink_.error(fmt::format("'{}' has # at two positions", item.name), item.place);
         }
         if (item.array) {
             check_size(*item.array, item);
@@ -181,7 +181,7 @@ class Checker {
         const auto size = parse_int(array.size);
         if (array.size.empty() || (size && (*size < 1 || *size > 4096))) {
             sink_.error(fmt::format("'{}' has the size '{}'", item.name, array.size), item.place,
-                        "it takes a number from 1 to 4096");
+                        "use a number from 1 to 4096");
         }
     }
 
@@ -227,8 +227,9 @@ class Checker {
             "int", "long",          "unsigned", "unsigned int", "u32",
             "s32", "unsigned long", "string",   "char*",        "dummy"};
         if (std::find(TYPES.begin(), TYPES.end(), parameter.type) == TYPES.end()) {
-            sink_.error(fmt::format("'{}' is no type of a module parameter", parameter.type), parameter.place,
-                        "it is int, long, string or, for one that the code declares itself, dummy");
+            sink_.error(fmt::format("'{}' is not a type of a module parameter", parameter.type),
+                        parameter.place,
+                        "use int, long, string, or dummy for a parameter that the code declares");
         }
         if (parameter.type != "dummy") {
             claim(parameter.name, parameter.place, "module parameter");
@@ -244,9 +245,8 @@ class Checker {
         }
         const CodeFacts facts = look_at_code(component_.code);
         if (facts.deep.has_value()) {
-            sink_.error(
-                fmt::format("the code has more than {} '{}' in one another", MOST_NESTED, facts.deep->name),
-                {component_.file, component_.code_line + facts.deep->line, facts.deep->column});
+            sink_.error(fmt::format("the code has more than {} nested '{}'", MOST_NESTED, facts.deep->name),
+                        {component_.file, component_.code_line + facts.deep->line, facts.deep->column});
             return;
         }
         const bool is_body = !facts.has_function_word && component_.functions.size() == 1;

@@ -62,7 +62,7 @@ Result<ObjectFacts> look_at_object(std::string_view bytes, const std::string &fi
     const bool is_elf = header && std::memcmp(header->e_ident, ELFMAG, SELFMAG) == 0 &&
                         header->e_ident[EI_CLASS] == ELFCLASS64 && header->e_shentsize == sizeof(Elf64_Shdr);
     if (!is_elf) {
-        return fail(fmt::format("{} is no object file of a 64-bit machine", file));
+        return fail(fmt::format("{} is not an object file of a 64-bit machine", file));
     }
     std::vector<Elf64_Shdr> sections;
     for (unsigned i = 0; i < header->e_shnum; ++i) {
@@ -73,7 +73,7 @@ Result<ObjectFacts> look_at_object(std::string_view bytes, const std::string &fi
         sections.push_back(*section);
     }
     if (header->e_shstrndx >= sections.size()) {
-        return fail(fmt::format("{} has no names of sections", file));
+        return fail(fmt::format("{} has no section names", file));
     }
     const auto content = [&](const Elf64_Shdr &section) {
         return part(bytes, section.sh_offset, section.sh_size);

@@ -43,7 +43,7 @@ Result<const Known *> find_long(std::string_view word) {
         }
         if (known.name.starts_with(word)) {
             if (found != nullptr) {
-                return fail(fmt::format("--{} may be --{} or --{}", word, found->name, known.name));
+                return fail(fmt::format("--{} is ambiguous: --{} or --{}", word, found->name, known.name));
             }
             found = &known;
         }
@@ -54,7 +54,7 @@ Result<const Known *> find_long(std::string_view word) {
             names.emplace_back(known.name);
         }
         const std::string near = nearest_name(word, names);
-        return fail(fmt::format("there is no option --{}", word), {},
+        return fail(fmt::format("unknown option --{}", word), {},
                     near.empty() ? "--help lists them" : fmt::format("did you mean --{}?", near));
     }
     return found;
@@ -80,7 +80,7 @@ Result<> apply(const Known &known, const std::string &value, Options &options) {
     case What::PERSONALITIES: {
         const auto number = parse_int(value);
         if (!number || *number < 1 || *number > 65536) {
-            return fail(fmt::format("--personalities={} takes a number from 1 to 65536", value));
+            return fail(fmt::format("--personalities={} must be a number from 1 to 65536", value));
         }
         options.personalities = static_cast<int>(*number);
         return {};
@@ -121,7 +121,7 @@ Result<Options> parse_options(const std::vector<std::string> &arguments) {
                     one = known.letter == letter ? &known : one;
                 }
                 if (one == nullptr) {
-                    return fail(fmt::format("there is no option -{}", letter), {}, "--help lists them");
+                    return fail(fmt::format("unknown option -{}", letter), {}, "--help lists them");
                 }
                 found.push_back(one);
             }

@@ -123,7 +123,7 @@ class Parser {
         }
         const std::string near = nearest_name(word, known);
         return fail(word.empty() ? std::string("a declaration is expected here")
-                                 : fmt::format("'{}' is no declaration", word),
+                                 : fmt::format("'{}' is not a declaration", word),
                     place,
                     near.empty() ? "the code starts after ;; on a separate line"
                                  : fmt::format("did you mean '{}'?", near));
@@ -136,7 +136,7 @@ class Parser {
         if (!is_code_mark && scanner_.accept(";")) {
             return {};
         }
-        return fail("';' is expected here", scanner_.place(), "it ends the declaration before");
+        return fail("';' is expected here", scanner_.place(), "it ends the previous declaration");
     }
 
     Result<std::string> optional_doc() {
@@ -188,8 +188,8 @@ class Parser {
                 return {};
             }
         }
-        return fail(fmt::format("'{}' is no direction of a {}", word, item.isPin ? "pin" : "parameter"),
-                    place, item.isPin ? "it is in, out or io" : "it is r or rw");
+        return fail(fmt::format("'{}' is not a direction of a {}", word, item.isPin ? "pin" : "parameter"),
+                    place, item.isPin ? "use in, out or io" : "use r or rw");
     }
 
     Result<> type(Item &item) {
@@ -202,8 +202,8 @@ class Parser {
                 return {};
             }
         }
-        return fail(fmt::format("'{}' is no HAL type", word), place,
-                    "it is bit, float, signed (s32), unsigned (u32), s64, u64 or port");
+        return fail(fmt::format("'{}' is not a HAL type", word), place,
+                    "use bit, float, signed (s32), unsigned (u32), s64, u64 or port");
     }
 
     Result<> array(std::optional<ArraySize> &array) {

@@ -190,7 +190,7 @@ class Job {
 
     Result<> run_source() {
         if (options_.mode != Mode::COMPILE && options_.mode != Mode::INSTALL) {
-            return fail(fmt::format("{}: a C file is compiled or installed", file_), {},
+            return fail(fmt::format("{}: use --compile or --install for a C file", file_), {},
                         "--compile or --install");
         }
         BuildOrder order;
@@ -221,7 +221,7 @@ class Job {
                 list += (list.empty() ? "" : ", ") + call;
             }
             language::tell(
-                fmt::format("{}: note: it calls {}, which realtime functions must not", file_, list));
+                fmt::format("{}: note: it calls {}, which realtime functions must not call", file_, list));
         }
         const bool installed = options_.mode == Mode::INSTALL;
         const std::string to = !installed ? beside(product)
@@ -233,10 +233,12 @@ class Job {
 
     Result<> run_python() {
         if (!options_.userspace) {
-            return fail(fmt::format("{}: a Python component is a userspace one", file_), {}, "--userspace");
+            return fail(fmt::format("{}: a Python component is a userspace component", file_), {},
+                        "--userspace");
         }
         if (options_.mode != Mode::COMPILE && options_.mode != Mode::INSTALL) {
-            return fail(fmt::format("{}: a Python file is compiled (checked) or installed", file_));
+            return fail(
+                fmt::format("{}: use --compile (checks the file) or --install for a Python file", file_));
         }
         const auto text = read_file(file_);
         if (!text) {
@@ -248,7 +250,7 @@ class Job {
             return std::unexpected(status.error());
         }
         if (*status != 0) {
-            return fail(fmt::format("{} is no Python program", file_));
+            return fail(fmt::format("{} is not a Python program", file_));
         }
         if (!text->starts_with("#!")) {
             return fail(fmt::format("{} cannot be run as a program", file_), {file_, 1, 1},

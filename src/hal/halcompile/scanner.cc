@@ -213,7 +213,7 @@ Result<std::string> Scanner::take_expression(std::string_view stops, std::string
         } else if (!open.empty() && c == open.back()) {
             open.pop_back();
         } else if (c == ')' || c == ']' || c == '}') {
-            return fail(fmt::format("'{}' closes nothing", c), place());
+            return fail(fmt::format("'{}' has no opening bracket", c), place());
         }
         if (c == '"' || c == '\'') {
             if (!skip_quoted()) {

@@ -153,7 +153,7 @@ Result<std::unique_ptr<HostClient>> HostClient::connect(const std::string &insta
 Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instance, MessagesTo messages_to,
                                                       Lifetime lifetime) {
     if (isHostAlive(instance)) {
-        return fail("a realtime process of instance '" + instance + "' is alive", {},
+        return fail("a realtime process of instance '" + instance + "' is already running", {},
                     "end it with 'halrun -U', or choose another name in MILLWRIGHT_INSTANCE");
     }
     int ready[2];
@@ -214,20 +214,21 @@ int HostClient::pid() const noexcept {
 
 /// The texts after "ok"; other answers are errors.
 Result<std::vector<std::string>> HostClient::ask(const std::vector<std::string> &request) {
-    auto answer = isSent(impl_->fd, request) ? receive(impl_->fd)
-                                             : Result<std::vector<std::string>>(fail("it does not listen"));
+    auto answer = isSent(impl_->fd, request)
+                      ? receive(impl_->fd)
+                      : Result<std::vector<std::string>>(fail("it does not accept connections"));
     if (!answer) {
         // The server closes its socket shortly before its process ends.
         static_cast<void>(impl_->hasEnded(CLOSING_MS));
         errno = EPIPE;
         const auto end = impl_->hal == nullptr ? std::nullopt : death();
         return std::unexpected(end.value_or(
-            Error{fmt::format("the realtime process of instance '{}' is gone", impl_->instance), {}, {}}));
+            Error{fmt::format("the realtime process of instance '{}' has ended", impl_->instance), {}, {}}));
     }
     if (answer->empty() || (*answer)[0] != "ok") {
         errno = EINVAL;
         const std::string hint = answer->size() > 2 ? (*answer)[2] : std::string();
-        return fail(answer->size() > 1 ? (*answer)[1] : "the realtime process gave no answer", {}, hint);
+        return fail(answer->size() > 1 ? (*answer)[1] : "the realtime process did not answer", {}, hint);
     }
     answer->erase(answer->begin());
     return answer;

@@ -103,7 +103,7 @@ Result<> HostServer::Impl::take_lock() {
     }
     lock = *fd;
     if (lock < 0) {
-        return fail("a realtime process of instance '" + instance + "' is alive", {},
+        return fail("a realtime process of instance '" + instance + "' is already running", {},
                     "end it with 'halrun -U', or choose another name in MILLWRIGHT_INSTANCE");
     }
     return {};
@@ -279,7 +279,7 @@ Message HostServer::Impl::answer(const Client &client, const Message &request) {
     }
     if (what == "end") {
         const bool by_controller = client.fd == controller_socket;
-        end_for(by_controller ? "" : fmt::format("process {} asked it to end", peer_of(client).pid));
+        end_for(by_controller ? "" : fmt::format("process {} requested its end", peer_of(client).pid));
         return {"ok"};
     }
     return {"error", "unknown request '" + what + "'", ""};

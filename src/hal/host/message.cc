@@ -59,7 +59,7 @@ Result<bool> decode(std::string &buffer, Message &message) {
         const std::size_t size = at + COUNT <= end ? count_at(buffer, at) : LONGEST_MESSAGE;
         at += COUNT;
         if (at > end || size > end - at) {
-            return fail("a message is broken");
+            return fail("a message is not valid");
         }
         message.emplace_back(buffer, at, size);
         at += size;
@@ -100,7 +100,7 @@ Result<Message> receive(int fd) {
             continue;
         }
         if (got <= 0) {
-            return fail("the realtime process is gone");
+            return fail("the realtime process has ended");
         }
         buffer.append(bytes, static_cast<std::size_t>(got));
     }
@@ -163,7 +163,7 @@ Result<int> take_lock(const std::string &instance) {
         }
         ::close(fd);
     }
-    return fail("the lock " + *path + " is removed again and again by another process");
+    return fail("the lock " + *path + " is repeatedly removed by another process");
 }
 
 void drop_lock(const std::string &instance, int fd) {

@@ -107,8 +107,8 @@ Result<int> parse_position(const Call &call) {
     }
     const std::optional<std::int64_t> position = parse_int(call.text(2));
     if (!position || *position == 0 || *position > 10000 || *position < -10000) {
-        return fail(fmt::format("'{}' is no position", call.text(2)), call.place_of(2),
-                    "1 is the first, -1 the last place");
+        return fail(fmt::format("'{}' is not a position", call.text(2)), call.place_of(2),
+                    "1 is the first position, -1 the last");
     }
     return static_cast<int>(*position);
 }
@@ -177,11 +177,9 @@ Result<> run_waitusr(Session &session, const Call &call) {
     const Result<> ended = at(session.programs().wait_for_end(call.text(0)), call.place_of(0));
     for (const DeathInfo &death : session.hal().processes().deaths()) {
         if (ended && death.name == call.text(0)) {
-            session.warn(
-                call.place_of(0),
-                fmt::format("component '{}' died: its process {} ended without leaving HAL; its outputs "
-                            "have their safe values",
-                            death.name, death.pid));
+            session.warn(call.place_of(0), fmt::format("component '{}' died: its process {} ended without "
+                                                       "hal_exit; its outputs have their safe values",
+                                                       death.name, death.pid));
         }
     }
     return ended;
@@ -196,7 +194,7 @@ Result<> run_unloadusr(Session &session, const Call &call) {
         return warn_not_loaded(session, call.words[0]);
     }
     if (component->type != CompType::USER) {
-        return fail(fmt::format("component '{}' is no program", call.text(0)), call.place_of(0),
+        return fail(fmt::format("component '{}' is not a program", call.text(0)), call.place_of(0),
                     "use unloadrt for a realtime module");
     }
     return at(session.programs().stop(call.text(0)), call.place_of(0));

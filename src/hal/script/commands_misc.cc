@@ -156,7 +156,7 @@ Result<> run_debug(Session &session, const Call &call) {
     const std::optional<std::int64_t> level = parse_int(call.text(0));
     constexpr std::int64_t HIGHEST = 5;
     if (!level || *level < 0 || *level > HIGHEST) {
-        return fail(fmt::format("'{}' is no debug level", call.text(0)), call.place_of(0), "0 to 5");
+        return fail(fmt::format("'{}' is not a debug level", call.text(0)), call.place_of(0), "0 to 5");
     }
     return at(session.host().set_log_level(static_cast<runtime::LogLevel>(*level)), call.place);
 }

@@ -102,7 +102,7 @@ Result<> SystemProgramHost::wait_until_ready(const ProgramRequest &request, int 
         }
         if (const auto end = waited_ns % LOOK_NS == 0 ? hal_.host_status().end_reason() : std::nullopt) {
             kill(pid, SIGTERM);
-            return fail(fmt::format("the realtime process has ended while component '{}' was awaited: {}",
+            return fail(fmt::format("the realtime process has ended during the wait for component '{}': {}",
                                     request.component, *end));
         }
         nap();

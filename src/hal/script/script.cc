@@ -31,7 +31,7 @@ std::size_t session_layout() {
 }
 
 Result<std::unique_ptr<ScriptRunner>> load_tcl(Session &session) {
-    std::string why = "it is not there";
+    std::string why = "it is not installed";
     for (const std::string &path : places()) {
         if (access(path.c_str(), R_OK) != 0) {
             continue;

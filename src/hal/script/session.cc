@@ -211,7 +211,7 @@ Result<> Session::run_file(const std::string &name, const std::vector<std::strin
             return std::unexpected(path.error());
         }
         if (running_.size() >= MAX_DEPTH) {
-            return fail(fmt::format("'{}' runs itself: {} files deep", name, MAX_DEPTH));
+            return fail(fmt::format("'{}' calls itself: {} files deep", name, MAX_DEPTH));
         }
         if (path->ends_with(".tcl")) {
             return std::pair{*path, std::string()};
@@ -268,7 +268,7 @@ Result<> Session::run_line(const LogicalLine &line, const std::string &file) {
     }
     if (constexpr std::size_t LONGEST = 65536; line.text.size() > LONGEST) {
         const auto refused = fail(
-            fmt::format("a command with the lines that continue it has {} characters, at most {} are allowed",
+            fmt::format("a command with its continuation lines has {} characters, at most {} are allowed",
                         line.text.size(), LONGEST),
             {file, line.first_line, 1});
         report(refused.error());

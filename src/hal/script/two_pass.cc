@@ -154,7 +154,7 @@ Result<> MergedLoads::add_count(Load &load, const Parameter &parameter) {
     constexpr std::int64_t HIGHEST = 10000;
     const auto count = parse_c_int(parameter.value);
     if (!count || *count < 0 || *count > HIGHEST) {
-        return fail(fmt::format("'{}' is no number of instances", parameter.value), parameter.place,
+        return fail(fmt::format("'{}' is not a number of instances", parameter.value), parameter.place,
                     fmt::format("{}=2, for example", parameter.name));
     }
     load.count_word = parameter.name;

@@ -171,7 +171,7 @@ Flow<Finding> check_home(Stage &stage, int joint) {
 
 Flow<Finding> check_travel(Stage &stage, int joint) {
     if (stage.plan().switches == setup::Switches::NONE || stage.isOneOfTwo(joint)) {
-        co_return found("travel", stage, joint, Fault::NONE, "travel as answered");
+        co_return found("travel", stage, joint, Fault::NONE, "travel from the answers");
     }
     const setup::Axis axis = stage.axis(joint);
     const std::string motor = stage.motor(joint).name, name = to_upper(motor);

@@ -108,9 +108,9 @@ Finding found(const char *step, const Stage &stage, int joint, Fault fault, std:
 }
 
 Flow<Finding> check_thread(Stage &stage, int joint) {
-    stage.show(make_prompt("thread", "",
-                           "The computer is watched. Use it as on a working day: screen, network, files.",
-                           "Late cycles of the servo thread: there must be none."));
+    stage.show(make_prompt(
+        "thread", "", "The computer is monitored. Use it as in normal operation: screen, network, files.",
+        "Late cycles of the servo thread: there must be none."));
     constexpr double THREAD_S = 5;
     const std::uint64_t before = stage.bench().late_cycles();
     co_await stage.wait(THREAD_S);
@@ -131,7 +131,7 @@ Flow<Finding> check_inputs(Stage &stage, int joint) {
     if (!clear) {
         co_return found("inputs", stage, joint, Fault::GIVEN_UP);
     }
-    stage.show(make_prompt("inputs", "", "The inputs are watched. Touch nothing."));
+    stage.show(make_prompt("inputs", "", "The inputs are monitored. Do not touch anything."));
     const int changes = co_await count_changes(stage, WATCH_S);
     if (changes > 0) {
         co_return found("inputs", stage, joint, Fault::NOISE,
@@ -217,7 +217,7 @@ Flow<Finding> check_probe(Stage &stage, int joint) {
     if (!stage.plan().wiring.probe_pin.has_value()) {
         co_return found("probe", stage, joint, Fault::NONE, "no probe");
     }
-    stage.show(make_prompt("probe", "", "The probe is watched. Touch nothing."));
+    stage.show(make_prompt("probe", "", "The probe is monitored. Do not touch anything."));
     const int changes = co_await count_changes(stage, WATCH_S);
     if (changes > 0) {
         co_return found("probe", stage, joint, Fault::NOISE,

@@ -70,10 +70,11 @@ Flow<Seen> look_at_direction(Stage &stage, int joint) {
     if (seen.fault != Fault::NONE) {
         co_return seen;
     }
-    Prompt question = make_prompt(
-        "direction", stage.motor(joint).name,
-        fmt::format("Which way did the tool of {} move against the work?", to_upper(stage.motor(joint).name)),
-        "Positive: X to the right, Y away from you, Z up, as the tool sees the work.");
+    Prompt question =
+        make_prompt("direction", stage.motor(joint).name,
+                    fmt::format("In which direction did the tool of {} move relative to the work?",
+                                to_upper(stage.motor(joint).name)),
+                    "Positive: X to the right, Y away from you, Z up, as the tool sees the work.");
     question.choices = {"positive", "negative", "not at all"};
     seen.way = co_await stage.choose(std::move(question));
     seen.fault = seen.way.empty() ? Fault::GIVEN_UP : Fault::NONE;
@@ -263,7 +264,7 @@ Prompt backlash_prompt(const Stage &stage, int joint, bool isBack) {
 
 Flow<Finding> measure_backlash(Stage &stage, int joint) {
     if (stage.isOneOfTwo(joint)) {
-        co_return found("backlash", stage, joint, Fault::NONE, "two motors: backlash as answered");
+        co_return found("backlash", stage, joint, Fault::NONE, "two motors: backlash from the answers");
     }
     const std::string motor = stage.motor(joint).name, name = to_upper(motor);
     const double travel = stage.plan().small(stage.axis(joint), 2), speed = stage.slow(joint);

@@ -9,7 +9,7 @@
 namespace mw::commissioning {
 
 std::vector<Step> steps_of(const setup::Plan &plan) {
-    std::vector<Step> steps{{"thread", "The computer keeps time", Bench::EVERY_JOINT, check_thread},
+    std::vector<Step> steps{{"thread", "Latency of the computer", Bench::EVERY_JOINT, check_thread},
                             {"inputs", "Home switches", Bench::EVERY_JOINT, check_inputs},
                             {"estop", "Emergency stop", Bench::EVERY_JOINT, check_estop}};
     int joint = 0;

@@ -189,7 +189,7 @@ std::string rounded(double value) {
 Flow<Finding> tune_limits(Stage &stage, int joint) {
     if (stage.plan().switches == setup::Switches::NONE || stage.axis(joint).motors.size() > 1) {
         co_return found("limits", stage, joint, Fault::NONE,
-                        "speeds as answered: lost steps show at a home switch only");
+                        "speeds from the answers: only a home switch can detect lost steps");
     }
     const setup::Axis axis = stage.axis(joint);
     const std::string motor = stage.motor(joint).name;
@@ -215,8 +215,8 @@ Flow<Finding> tune_limits(Stage &stage, int joint) {
     }
     Finding finding = found("limits", stage, joint, Fault::NONE);
     finding.values = {
-        {"greatest speed without a stall", speed.greatest, std::string(stage.unit(joint)) + "/s"},
-        {"greatest acceleration without a stall", acceleration.greatest,
+        {"maximum speed without a stall", speed.greatest, std::string(stage.unit(joint)) + "/s"},
+        {"maximum acceleration without a stall", acceleration.greatest,
          std::string(stage.unit(joint)) + "/s2"}};
     stage.change({{motor + ".speed", rounded(speed.greatest * SPEED_PART)},
                   {motor + ".acceleration", rounded(acceleration.greatest * ACCELERATION_PART)}});

@@ -190,10 +190,10 @@ bool hasJointBeyond(const IniReader &ini, int num_joints) {
 
 void miss_joint(IniReader &ini, const std::string &section, int num_joints) {
     if (!ini.file().hasSection(section) && hasJointBeyond(ini, num_joints)) {
-        ini.sink().error("section [" + section + "] is missing, and there is one above [KINS]JOINTS",
+        ini.sink().error("section [" + section + "] is missing, but a section above [KINS]JOINTS exists",
                          {ini.file().path(), 0, 0}, "joints are numbered from 0");
     } else {
-        miss_section(ini, section, "the joint is linear and has no limits, with 1 unit/s and 1 unit/s2");
+        miss_section(ini, section, "the joint is linear, without soft limits, with 1 unit/s and 1 unit/s2");
     }
 }
 

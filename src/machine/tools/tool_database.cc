@@ -150,8 +150,8 @@ void ToolDatabase::take_line(const std::string &line) {
     case Kind::CHANGE:
         awaited_.pop_front();
         if (isRefusal(line)) {
-            warnings_.push_back(fmt::format("the tool database '{}' does not agree to '{}': {}",
-                                            program_.name(), awaited.line, line));
+            warnings_.push_back(
+                fmt::format("the tool database '{}' rejects '{}': {}", program_.name(), awaited.line, line));
         }
         return;
     }

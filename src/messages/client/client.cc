@@ -101,7 +101,7 @@ Result<Serial> Client::post(const messages::Command &command) {
             return post_stop(*place);
         }
         return fail(
-            fmt::format("task has not taken the last {} commands of this client", mailbox::MAX_POSTED));
+            fmt::format("task has not accepted the last {} commands of this client", mailbox::MAX_POSTED));
     }
     posted->serial = viewer_.segment().serials.fetch_add(1, std::memory_order_relaxed) + 1;
     posted->size = static_cast<std::uint32_t>(bytes.size());

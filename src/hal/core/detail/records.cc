@@ -110,7 +110,7 @@ Result<> add_pin(Segment &segment, CompRecord &comp, const PinDeclaration &decla
                                           static_cast<int>(type), static_cast<int>(dir)));
     }
     if (!segment.contains(slot, sizeof *slot) || reinterpret_cast<std::uintptr_t>(slot) % sizeof *slot != 0) {
-        return refuse(EINVAL, fmt::format("pin '{}': its pointer is not in memory of hal_malloc", name));
+        return refuse(EINVAL, fmt::format("pin '{}': its pointer is not allocated by hal_malloc", name));
     }
     auto *pin = segment.make<PinRecord>(Kind::PIN, name);
     if (pin == nullptr) {
@@ -136,7 +136,7 @@ Result<> add_param(Segment &segment, CompRecord &comp, const ParamDeclaration &d
                                   name, static_cast<int>(type), static_cast<int>(dir)));
     }
     if (!segment.contains(address, type == Type::BIT ? 1 : 4)) {
-        return refuse(EINVAL, fmt::format("parameter '{}': its value is not in memory of hal_malloc", name));
+        return refuse(EINVAL, fmt::format("parameter '{}': its value is not allocated by hal_malloc", name));
     }
     auto *param = segment.make<ParamRecord>(Kind::PARAM, name);
     if (param == nullptr) {

@@ -141,9 +141,9 @@ TEST_F(HalTest, NamesAreCheckedAndListsSorted) {
     EXPECT_FALSE(hal.pins().create("late", Type::BIT, Dir::IN, comp));
     void *elsewhere = nullptr;
     const int other = *hal.components().create("other");
-    EXPECT_NE(
-        text_of(hal.pins().create("x", Type::BIT, Dir::IN, &elsewhere, other)).find("memory of hal_malloc"),
-        std::string::npos);
+    EXPECT_NE(text_of(hal.pins().create("x", Type::BIT, Dir::IN, &elsewhere, other))
+                  .find("allocated by hal_malloc"),
+              std::string::npos);
 }
 
 TEST_F(HalTest, LocksForbid) {
@@ -187,7 +187,7 @@ TEST(HalThreads, RunFunctionsInOrderAndInitFunctionsOnce) {
     EXPECT_EQ(text_of(hal.threads().add_function("c", "t", -2)), "ok");
     EXPECT_EQ(text_of(hal.threads().add_function("a", "t", 1)), "ok");
     EXPECT_EQ(text_of(hal.threads().add_init_function("i", "t")), "ok");
-    EXPECT_FALSE(hal.threads().add_function("a", "t")) << "may be called from one place only";
+    EXPECT_FALSE(hal.threads().add_function("a", "t")) << "can only be added once";
     EXPECT_FALSE(hal.threads().add_function("nothing", "t"));
     EXPECT_FALSE(hal.threads().add_function("b", "nothing"));
     machine.clock.step();

@@ -131,8 +131,8 @@ TEST(HalcompileParser, GoesOnAfterErrors) {
     EXPECT_EQ(
         errors_of("component x \"a;\npin in flot a;\npn in bit b;\npin sideways bit c;\nfunction _\nlicense "
                   "\"GPL\";\n;;\n"),
-        (Texts{"1:13 this string has no closing quote", "2:8 'flot' is no HAL type",
-               "3:1 'pn' is no declaration", "4:5 'sideways' is no direction of a pin",
+        (Texts{"1:13 this string has no closing quote", "2:8 'flot' is not a HAL type",
+               "3:1 'pn' is not a declaration", "4:5 'sideways' is not a direction of a pin",
                "6:1 ';' is expected before 'license'"}));
     EXPECT_EQ(errors_of("component x;\npin in bit a-#[3;\n/* no end").size(), 2U);
     EXPECT_EQ(errors_of("component x;\npin in bit a if (personality & 1;" + TAIL).size(), 1U);
@@ -154,8 +154,8 @@ TEST(HalcompileParser, RejectsConditionsInTheWrongOrder) {
 TEST(HalcompileChecker, FindsWhatCannotWork) {
     EXPECT_EQ(errors_of("component y;" + TAIL), (Texts{"1:1 component 'y' is in a file named x"}));
     EXPECT_EQ(errors_of("component x;\npin in bit a;\npin out bit a;" + TAIL),
-              (Texts{"3:1 the name 'a' is taken already"}));
-    EXPECT_EQ(errors_of("component x;\npin in bit if;" + TAIL), (Texts{"2:1 'if' is a word of C"}));
+              (Texts{"3:1 the name 'a' is already in use"}));
+    EXPECT_EQ(errors_of("component x;\npin in bit if;" + TAIL), (Texts{"2:1 'if' is a C keyword"}));
     EXPECT_EQ(errors_of("component x;\nvariable int fperiod;" + TAIL),
               (Texts{"2:1 the name 'fperiod' is reserved"}));
     EXPECT_EQ(errors_of("component x;\npin in bit a-#;" + TAIL), (Texts{"2:1 'a-#' has # but no [SIZE]"}));

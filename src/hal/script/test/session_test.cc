@@ -55,7 +55,7 @@ TEST_F(SessionTest, ACommandOfMegabytesIsAnErrorWithItsLine) {
     for (int i = 0; i < 100'000; ++i) {
         text += "setp \\\n";
     }
-    EXPECT_EQ(run(text).find("test.hal:2:1: a command with the lines that continue it has 500000 characters"),
+    EXPECT_EQ(run(text).find("test.hal:2:1: a command with its continuation lines has 500000 characters"),
               0U);
 }
 

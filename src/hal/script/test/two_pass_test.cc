@@ -109,7 +109,7 @@ TEST_F(TwoPassTest, WhatCannotBeMergedIsAnErrorWithBothPlaces) {
               std::string::npos);
     EXPECT_NE(run({"loadrt step type=1\nloadrt step type=2\n"}).find("has type=2 here and type=1 at "),
               std::string::npos);
-    EXPECT_EQ(run({"loadrt step count=x\n"}), "'x' is no number of instances\n");
+    EXPECT_EQ(run({"loadrt step count=x\n"}), "'x' is not a number of instances\n");
     EXPECT_TRUE(host->lines.empty());
     EXPECT_EQ(run({"loadrt broken names=a\n", "loadrt broken names=b\n"}),
               "it is broken (all lines together: loadrt broken names=a,b)\n");

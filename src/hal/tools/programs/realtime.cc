@@ -15,8 +15,8 @@ constexpr const char *USAGE = R"(usage: realtime start|stop|restart|status|verif
 
   start    starts a realtime process that runs until stop
   stop     ends it, and the programs that have components in it
-  restart  both
-  status   says whether it runs; the exit status is 0 when it does
+  restart  stop, then start
+  status   reports whether it is running; exit status 0 if it is
   verify   starts a separate one and reports whether its threads have realtime priority and locked memory; 0 when they have
 )";
 

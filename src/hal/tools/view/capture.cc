@@ -34,7 +34,7 @@ Result<std::string> enter_thread(Instance &hal, const std::string &wanted) {
         if (std::find(thread.functions.begin(), thread.functions.end(), FUNCTION) != thread.functions.end()) {
             if (!wanted.empty() && wanted != thread.name) {
                 return fail(fmt::format("{} runs in thread '{}' already", FUNCTION, thread.name), {},
-                            "leave --thread out, or delf it first");
+                            "omit --thread, or remove the function with delf first");
             }
             return std::string{};
         }
@@ -151,7 +151,7 @@ Result<> Capture::begin(const CaptureRequest &request) {
             fmt::format("{} channels requested, 1 to {} are possible", names_.size(), CAPTURE_CHANNELS));
     }
     if (!(request.pretrigger >= 0.0 && request.pretrigger < 1.0)) {
-        return fail("the part before the trigger is 0 to below 1 of the record");
+        return fail("the part before the trigger must be 0 to below 1 of the record");
     }
     settings_ = {};
     settings_.channels = static_cast<std::uint32_t>(names_.size());

@@ -28,7 +28,7 @@ constexpr const char *USAGE =
     "usage: millwright hal [COMMAND ...]      show the running HAL\n"
     "\n"
     "  (no command) [NAME...]  pins, signals and threads live on the terminal; NAMEs are watched\n"
-    "  watch NAME...           a line of values again and again\n"
+    "  watch NAME...           prints a line of values periodically\n"
     "  capture NAME...         records up to 16 pins, signals or parameters in realtime\n"
     "  graph                   draws components and signals\n"
     "  latency                 latency of threads in a separate realtime process\n"
@@ -107,9 +107,9 @@ struct WatchCommand {
 
     CommandLine line() {
         CommandLine line("millwright hal watch NAME... [options]",
-                         "Prints a line of values of pins, parameters or signals again and again.\n");
+                         "Periodically prints a line with values of pins, parameters or signals.\n");
         line.number("--every", "S", "seconds between two lines (default 0.5)", every_s, 0.001, 3600);
-        line.number("--count", "N", "so many lines (default: until stopped)", count, 1, 1000000000);
+        line.number("--count", "N", "number of lines (default: until stopped)", count, 1, 1000000000);
         line.rest(names);
         return line;
     }
@@ -138,7 +138,7 @@ Result<TriggerKind> trigger_kind(const std::string &word) {
         }
     }
     return fail(fmt::format("unknown trigger type '{}'", word), {},
-                "rising, falling, either, above and below are");
+                "use rising, falling, either, above or below");
 }
 
 Result<> take_trigger(CaptureRequest &request, const Words &words) {
@@ -148,7 +148,7 @@ Result<> take_trigger(CaptureRequest &request, const Words &words) {
         return std::unexpected(kind.error());
     }
     if (!level || !std::isfinite(*level)) {
-        return fail(fmt::format("'{}' is no level", words[2]));
+        return fail(fmt::format("'{}' is not a level", words[2]));
     }
     request.trigger_name = words[0];
     request.trigger = *kind;
@@ -168,10 +168,10 @@ struct CaptureCommand {
         CommandLine line(
             "millwright hal capture NAME... [options]",
             "Records up to 16 pins, signals or parameters in realtime. CSV to standard output without -o.\n");
-        line.texts("-o", "FILE", "write .csv, .png or .svg; may come several times", outputs);
-        line.number("--samples", "N", "so many (default 1000)", request.samples, 1, 1 << 24);
-        line.number("--every", "N", "one in N periods (default 1)", request.every, 1, 1000000);
-        line.text("--thread", "NAME", "in this thread", thread);
+        line.texts("-o", "FILE", "output file .csv, .png or .svg; may be repeated", outputs);
+        line.number("--samples", "N", "number of samples (default 1000)", request.samples, 1, 1 << 24);
+        line.number("--every", "N", "record one in N periods (default 1)", request.every, 1, 1000000);
+        line.text("--thread", "NAME", "thread that records", thread);
         line.take("--trigger", 3, "NAME KIND LEVEL",
                   "trigger on NAME; KIND: rising, falling, either, above or below",
                   [this](const Words &words) { return take_trigger(request, words); });
@@ -266,9 +266,9 @@ struct GraphCommand {
         CommandLine line("millwright hal graph [options]",
                          "Draws components and signals. Dot text to standard output without -o.\n");
         line.text("-o", "FILE", "write .svg, .png, .pdf or .dot", path);
-        line.text("--only", "GLOB", "components and signals of such names", options.glob);
-        line.flag("--values", "with values", options.showsValues);
-        line.flag("--unlinked", "with pins that are not linked", options.showsUnlinked);
+        line.text("--only", "GLOB", "only components and signals with such names", options.glob);
+        line.flag("--values", "show values", options.showsValues);
+        line.flag("--unlinked", "also show unlinked pins", options.showsUnlinked);
         return line;
     }
 };
@@ -303,9 +303,10 @@ struct LatencyCommand {
     CommandLine line() {
         CommandLine line("millwright hal latency [options]",
                          "Measures the latency of threads in a separate realtime process.\n");
-        take_period(line, "--base", "of a base thread: 25us, 1ms or nanoseconds (default: none)", base_ns);
-        take_period(line, "--servo", "of the servo thread (default 1ms)", servo_ns);
-        line.number("--seconds", "S", "so long (default: until stopped)", options.seconds, 0.01, 1e7);
+        take_period(line, "--base", "period of the base thread: 25us, 1ms or nanoseconds (default: none)",
+                    base_ns);
+        take_period(line, "--servo", "period of the servo thread (default 1ms)", servo_ns);
+        line.number("--seconds", "S", "duration (default: until stopped)", options.seconds, 0.01, 1e7);
         line.text("-o", "FILE", "write .png, .svg or .csv", path);
         line.text("--text", "NOTE", "text in the image", options.note);
         return line;
@@ -387,7 +388,7 @@ int latency_test(const Words &words, volatile std::sig_atomic_t &stop) {
     CommandLine line(
         "latency-test [base-period [servo-period]] [options]",
         "Periods as 25us, 1ms or nanoseconds; base-period 0: servo thread only. Default: 25us 1ms\n");
-    line.number("--seconds", "S", "so long (default: until stopped)", options.seconds, 0.01, 1e7);
+    line.number("--seconds", "S", "duration (default: until stopped)", options.seconds, 0.01, 1e7);
     line.text("-o", "FILE", "write .png or .svg", options.picture_path);
     line.rest(rest);
     if (options::wantsHelp(words)) {
@@ -425,13 +426,14 @@ struct HistogramCommand {
     CommandLine line() {
         CommandLine line("latency-histogram [options]",
                          "Prints histograms at the end (Ctrl-C, or after S seconds).\n");
-        take_period(line, "--base", "of the base thread [ns] (default 25000)", base_ns);
-        take_period(line, "--servo", "of the servo thread [ns] (default 1000000)", servo_ns);
+        take_period(line, "--base", "period of the base thread [ns] (default 25000)", base_ns);
+        take_period(line, "--servo", "period of the servo thread [ns] (default 1000000)", servo_ns);
         line.flag("--nobase", "servo thread only", has_no_base);
-        line.number("--bbinsize", "NS", "bins of the base thread (default 100)", base_bin_ns, 1, 1000000);
-        line.number("--sbinsize", "NS", "bins of the servo thread (default 100)", servo_bin_ns, 1, 1000000);
+        line.number("--bbinsize", "NS", "bin size of the base thread (default 100)", base_bin_ns, 1, 1000000);
+        line.number("--sbinsize", "NS", "bin size of the servo thread (default 100)", servo_bin_ns, 1,
+                    1000000);
         line.text("--text", "NOTE", "text in the image", options.note);
-        line.number("--seconds", "S", "so long (default: until stopped)", options.seconds, 0.01, 1e7);
+        line.number("--seconds", "S", "duration (default: until stopped)", options.seconds, 0.01, 1e7);
         line.text("-o", "FILE", "write .png or .svg", options.picture_path);
         line.text("--csv", "FILE", "write the counts", options.csv_path);
         line.number("--bbins", "N", "", without_effect, 1, 1e6);
@@ -441,9 +443,8 @@ struct HistogramCommand {
         line.flag("--verbose", "", ignored);
         line.flag("--nox", "", ignored);
         line.flag("-?", "", wants_help);
-        line.footer("--bbins, --sbins, --logscale, --show, --verbose and --nox are taken and have no effect: "
-                    "all bins "
-                    "are\ncounted and shown.\n");
+        line.footer("--bbins, --sbins, --logscale, --show, --verbose and --nox are accepted without effect: "
+                    "all bins are\ncounted and shown.\n");
         return line;
     }
 };

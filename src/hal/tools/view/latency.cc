@@ -138,7 +138,7 @@ Result<std::int64_t> parse_period(const std::string &text) {
     const double factor = unit == "ns" ? 1 : unit == "us" ? 1e3 : unit == "ms" ? 1e6 : unit == "s" ? 1e9 : 0;
     constexpr double LEAST = 1000, MOST = 1e9;
     if (!number || factor == 0 || !(*number * factor >= LEAST && *number * factor <= MOST)) {
-        return fail(fmt::format("'{}' is no period", text), {},
+        return fail(fmt::format("'{}' is not a period", text), {},
                     "write 25us, 1ms or nanoseconds, 1 us to 1 s");
     }
     return std::llround(*number * factor);

@@ -41,8 +41,8 @@ namespace {
 
 constexpr const char *METER_USAGE = "usage: halmeter [-s] [pin|sig|param NAME] [-g X Y [WIDTH]]\n"
                                     "  shows it on the terminal (as `millwright hal NAME`), elsewhere as "
-                                    "lines of text; there is no window, so\n"
-                                    "  that -s and -g change nothing\n";
+                                    "lines of text; there is no window:\n"
+                                    "  -s and -g have no effect\n";
 constexpr const char *SCOPE_TEXT =
     "halscope: there is no oscilloscope in a window. `millwright hal capture NAME... --help` records up to "
     "16\n"

@@ -58,7 +58,7 @@ struct CommandDispatcher::Handler {
     }
     Outcome operator()(const SetMotionMode &command) {
         return command.mode == messages::MotionMode::COORD
-                   ? fail("motion is coordinated in auto and MDI mode, by itself")
+                   ? fail("auto and MDI mode select coordinated motion automatically")
                    : (*this)(SetTeleop{command.mode == messages::MotionMode::TELEOP});
     }
 

@@ -12,8 +12,8 @@
 
 namespace mw::task {
 
-/// The reason why a waiting command was not begun.
-inline constexpr const char *OVERTAKEN = "it came before a stop";
+/// Why a command that waited was never begun.
+inline constexpr const char *OVERTAKEN = "the command was sent before a stop";
 
 /// Sends commands to motion, reports to clients, and provides the time of the cycle. All calls come from one
 /// thread.

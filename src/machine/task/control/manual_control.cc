@@ -80,7 +80,7 @@ void ManualControl::step() {
     const bool failed = ended.has_value() && ended->progress != Progress::DONE;
     if (failed || modes_.state() != State::ON || modes_.mode() != Mode::MANUAL) {
         port_.refuse(homing_.drop(),
-                     "the joint before it was not homed, or the machine is no longer in manual mode");
+                     "the previous joint was not homed, or the machine is no longer in manual mode");
     }
     if (const auto turn = homing_.take_turn()) {
         homing_.begin(turn->joint, turn->command, port_.send(motion::Home{turn->joint}));
@@ -93,7 +93,7 @@ void ManualControl::step() {
 void ManualControl::refuse(motion::CommandId order, const std::string &reason) {
     if (const auto refused = homing_.refuse(order, reason)) {
         port_.tell(refused);
-        port_.refuse(homing_.drop(), "the joint before it was not homed");
+        port_.refuse(homing_.drop(), "the previous joint was not homed");
     }
 }
 

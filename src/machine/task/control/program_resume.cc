@@ -74,10 +74,10 @@ Result<> ProgramResume::check_recovery() const {
         return std::unexpected(offer.error());
     }
     if ((*offer)->progress->tools != sum_of_tools(parts_.tools)) {
-        return fail("the tool table has been changed since the program was interrupted", {},
-                    fmt::format("run it from line {}, or the nearest possible: that uses the tools "
-                                "as they are now",
-                                (*offer)->progress->line));
+        return fail(
+            "the tool table has been changed since the program was interrupted", {},
+            fmt::format("run it from line {}, or the nearest possible line: this uses the current tools",
+                        (*offer)->progress->line));
     }
     return runs_.check_can_run();
 }
@@ -172,7 +172,7 @@ Result<Progress> ProgramResume::calculate_again() {
     };
     const Result<> called = parts_.run.isProgram()
                                 ? parts_.recovery.call_back(paused_.place(), parts_.reader.canon().marks())
-                                : fail("it is a line of MDI");
+                                : fail("it is an MDI line");
     if (!called.has_value()) {
         return refused(called.error());
     }

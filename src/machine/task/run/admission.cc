@@ -19,10 +19,10 @@ constexpr Cell NEEDS_AUTO = "running a program needs auto mode",
                NEEDS_MDI = "Must be in MDI mode to issue MDI command",
                NEEDS_MANUAL = "this needs manual mode",
                HELD_AXES = "release the axes of the paused program first";
-constexpr Cell NO_PAUSE = "no program runs that could be paused", NO_RESUME = "nothing is paused",
-               NO_STEP = "single step needs a program", NO_TURN = "no program runs";
+constexpr Cell NO_PAUSE = "no running program to pause", NO_RESUME = "nothing is paused",
+               NO_STEP = "single step needs a program", NO_TURN = "no program is running";
 constexpr Cell NO_WAY = "no approach is proposed", CONFIRM = "the proposed approach waits for confirmation",
-               IS_AWAY = "the tool is away from the program: resume it first";
+               IS_AWAY = "the axes of the program are released: resume the program first";
 constexpr Cell NOT_HELD = "the axes can only be released while a program is paused",
                NOT_LINES = "the axes of an MDI line cannot be released: abort the line";
 constexpr Cell ON = "only while the machine is off";
@@ -74,7 +74,7 @@ constexpr std::array<Row, CLASSES> TABLE{{
     {NO_WAY, NO_WAY, NO_WAY, NO_WAY, NO_WAY, NO_WAY, TAKEN, NO_WAY, NO_WAY, NO_WAY, NO_WAY},
     /* RELEASE */
     {ESTOP, OFF, NOT_HELD, NOT_HELD, NOT_HELD, TAKEN, TAKEN, TAKEN, NOT_HELD, NOT_LINES, NOT_LINES},
-    /* OF_THE_MAILBOX */ all("the right to operate belongs to clients that are connected"),
+    /* OF_THE_MAILBOX */ all("only connected clients can have the right to operate"),
 }};
 
 Situation of_run(const RunState &run, Situation idle, Situation running, Situation held) {

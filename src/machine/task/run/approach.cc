@@ -124,7 +124,7 @@ Result<> Approach::check(std::uint64_t number, std::int64_t now_ns) const {
         return fail(fmt::format("the proposed approach is number {}", number_));
     }
     if (number == 0 && now_ns - since_ns_ < SEEN_NS) {
-        return fail("the approach was proposed a moment ago", {}, "check it, then confirm it");
+        return fail("the approach was proposed a moment ago", {}, "check the approach, then confirm it");
     }
     return {};
 }
@@ -187,7 +187,7 @@ std::string approach_text(const ApproachPlan &plan) {
         add(plan.modes.isFloodOn ? "flood" : "mist");
     }
     for (const int code : plan.modes.user_codes) {
-        add(fmt::format("M{} was passed and is not run", code));
+        add(fmt::format("M{} was skipped", code));
     }
     return text;
 }

@@ -53,9 +53,9 @@ BlockSearch::Outcome BlockSearch::look_at_line() {
     const gcode::NextLine next = interpreter_.next_line();
     const bool matching = line_ > 0 && next.line == line_ && next.in_main_file;
     if (next.in_call) {
-        return matching ? refuse_before(fmt::format(
-                              "line {} is in subroutine o<{}>, which line {} is the first to call", line_,
-                              interpreter_.subroutine(), next.main_line))
+        return matching ? refuse_before(
+                              fmt::format("line {} is in subroutine o<{}>, whose first call is in line {}",
+                                          line_, interpreter_.subroutine(), next.main_line))
                         : Outcome::GOING;
     }
     const std::string why = interpreter_.state().why_no_start();

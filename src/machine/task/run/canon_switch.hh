@@ -86,11 +86,11 @@ class CanonSwitch final : public gcode::MachineCanon,
         } else if (std::holds_alternative<gcode::WaitInput>(call)) {
             doubt_ = "an input (M66)";
         } else if (std::holds_alternative<gcode::ReloadTools>(call)) {
-            doubt_ = "a tool table that is read again (G10 L0)";
+            doubt_ = "the reloaded tool table (G10 L0)";
         } else if (std::holds_alternative<gcode::ChangeTool>(call) && isRandom()) {
-            doubt_ = "where a changer that swaps tools has put them (M6)";
+            doubt_ = "the pockets of a random tool changer (M6)";
         } else if (std::holds_alternative<gcode::ChangeToolNumber>(call) && isRandom()) {
-            doubt_ = "where a changer that swaps tools has put them (M61)";
+            doubt_ = "the pockets of a random tool changer (M61)";
         }
     }
     const gcode::World &world() const { return search_ != nullptr ? *search_ : real_.world; }

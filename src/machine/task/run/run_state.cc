@@ -33,10 +33,10 @@ constexpr auto BUSY = no_phase("a program or MDI line is already running");
 constexpr const char *LATE = "late";
 constexpr auto NOT_DUE = no_phase(LATE), NOT_READING = no_phase(LATE), NO_SYNC = no_phase(LATE),
                NO_STOP = no_phase(LATE);
-constexpr auto NO_PAUSE = no_phase("no program runs that could be paused");
+constexpr auto NO_PAUSE = no_phase("no running program to pause");
 constexpr auto NO_RESUME = no_phase("nothing is paused");
-constexpr auto NO_STEP = no_phase("no program runs that could be stepped");
-constexpr auto NO_RELEASE = no_phase("no paused program has axes that could be released");
+constexpr auto NO_STEP = no_phase("no running program to step");
+constexpr auto NO_RELEASE = no_phase("no paused program with axes to release");
 constexpr auto NO_PLACE = no_phase("no approach is proposed");
 
 /// Columns: IDLE, CLEANING, STARTING, SEARCHING, READING, SYNCHING, FINISHING.
@@ -67,7 +67,7 @@ constexpr auto NOT_HELD = no_hold("nothing is paused");
 constexpr auto NOT_STEPPING = no_hold(LATE);
 constexpr auto NO_WAY = no_hold("no approach is proposed");
 constexpr auto NOT_RELEASABLE = no_hold("the axes can only be released while a program is paused");
-constexpr auto RETURN_FIRST = no_hold("the tool is away from the program: resume it first");
+constexpr auto RETURN_FIRST = no_hold("the axes of the program are released: resume the program first");
 constexpr auto CONFIRM_FIRST = no_hold("the proposed approach waits for confirmation");
 
 /// Columns: GOING, STEPPING, HELD, STOPPED, PROPOSED, AWAY.

@@ -42,7 +42,7 @@ void SearchMachine::take(const gcode::MachineCall &call) {
             [this](const gcode::ChangeTool &) { change_tool(); },
             [this](const gcode::ChangeToolNumber &one) { set_tool_number(one.toolno); },
             [this](const gcode::SetToolTableEntry &one) { entries_[one.index] = one.entry; },
-            [this](const gcode::ReloadTools &) { doubt("a tool table that is read again (G10 L0)"); },
+            [this](const gcode::ReloadTools &) { doubt("the reloaded tool table (G10 L0)"); },
             [this](const gcode::SwitchMist &one) { machine_.isMistOn = one.isOn; },
             [this](const gcode::SwitchFlood &one) { machine_.isFloodOn = one.isOn; },
             [this](const gcode::SwitchFeedOverride &one) {
@@ -95,7 +95,7 @@ void SearchMachine::change_tool() {
         return;
     }
     if (isRandom()) {
-        doubt("where a changer that swaps tools has put them (M6)");
+        doubt("the pockets of a random tool changer (M6)");
     }
     if (!real_.tool_change_with_spindle_on) {
         for (int i = 0; i < count_spindles(); ++i) {
@@ -115,7 +115,7 @@ void SearchMachine::set_tool_number(int toolno) {
         return;
     }
     if (isRandom()) {
-        doubt("where a changer that swaps tools has put them (M61)");
+        doubt("the pockets of a random tool changer (M61)");
     }
     load(toolno == 0 ? 0 : index_of_tool(toolno));
     machine_.tool_in_spindle = toolno;

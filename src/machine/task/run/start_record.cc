@@ -225,13 +225,13 @@ const gcode::ToolEntry *set_by_program(const FoundModes &found, int index) {
 Result<StartRecord> with_tools_now(StartRecord record, const FoundModes &found,
                                    const gcode::ToolSource &tools) {
     if (tools.count() != static_cast<int>(record.tools.size())) {
-        return fail("other tools are in the table");
+        return fail("the tool table has other tools");
     }
     for (int i = tools.isRandom() ? 0 : 1; i < tools.count(); ++i) {
         const gcode::ToolEntry now = tools.entry(i);
         gcode::ToolEntry &then = record.tools[static_cast<std::size_t>(i)];
         if (now.toolno != then.toolno) {
-            return fail("other tools are in the table");
+            return fail("the tool table has other tools");
         }
         const gcode::ToolEntry *const set = set_by_program(found, i);
         if (isSame(now, set != nullptr ? *set : then)) {

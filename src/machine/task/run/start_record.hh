@@ -69,8 +69,8 @@ class RecordedWorld final : public gcode::World, public gcode::ToolSource {
     StartRecord record_;
 };
 
-/// The same start with the current tools in `tools`. `found` is the state at the position where the program
-/// continues. Rejected if the table has other tools, or the program itself has set data that were changed.
+/// The same start with the current tools in `tools`. `found`: state at the position where the program
+/// continues. Rejected when the tool table has other tools, or the program itself has set changed data.
 Result<StartRecord> with_tools_now(StartRecord record, const FoundModes &found,
                                    const gcode::ToolSource &tools);
 

@@ -89,7 +89,7 @@ std::string fault_of(const struct stat &status, const Confinement &confinement) 
         return "it is not a file";
     }
     if (status.st_nlink > 1 || (status.st_mode & PROGRAM_BITS) != 0) {
-        return "it is a program, or has a second name";
+        return "it is executable, or has a second hard link";
     }
     const bool kept = std::ranges::any_of(confinement.kept_files,
                                           [&](const std::string &path) { return isSameFile(status, path); });

@@ -364,11 +364,11 @@ void Sequencer::perform(const gcode::ChangeTool &) {
 
 Result<> Sequencer::take_back(const geometry::Pose &place) {
     if (wait_ != Wait::NONE && wait_ != Wait::DWELL) {
-        return fail("a tool change or another wait is under way");
+        return fail("a tool change or another wait is active");
     }
     const std::string why = sent_.why_not(motion_.status(), place);
     if (!why.empty()) {
-        return fail(why, {}, "it is resumed, or aborted");
+        return fail(why, {}, "it is being resumed or aborted");
     }
     const std::vector<Item> rest = sent_.rest(motion_.status(), place);
     queue_.insert(queue_.begin(), rest.begin(), rest.end());

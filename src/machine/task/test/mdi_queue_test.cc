@@ -54,7 +54,7 @@ TEST_F(MdiQueueTest, AnAbortLeavesNothingQueued) {
         EXPECT_EQ(joined().find("line"), std::string::npos) << joined();
         EXPECT_EQ(progress(given[0]), Progress::FAILED);
         EXPECT_EQ(progress(given[1]), Progress::REFUSED);
-        EXPECT_EQ(reason(given[2]), "it came before a stop");
+        EXPECT_EQ(reason(given[2]), "the command was sent before a stop");
         EXPECT_EQ(task.status().task.queued_mdi, 0);
         ask(SetState{State::ESTOP_RESET});
         ask(SetState{State::ON});

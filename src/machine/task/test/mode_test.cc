@@ -26,7 +26,7 @@ TEST_F(TaskTest, AStopDoesNotWaitForTheModeToChange) {
     EXPECT_EQ(progress(stop), Progress::DONE);
     EXPECT_NE(joined().find("jog stop"), std::string::npos);
     EXPECT_EQ(progress(jog), Progress::REFUSED) << "it would begin after its stop";
-    EXPECT_EQ(reason(jog), "it came before a stop");
+    EXPECT_EQ(reason(jog), "the command was sent before a stop");
     EXPECT_EQ(progress(mode), Progress::STARTED);
     EXPECT_EQ(progress(other), Progress::STARTED) << "everything else waits";
     cycles(2100);
@@ -61,7 +61,7 @@ TEST_F(TaskTest, AStopAlsoEndsOlderCommandsThatStillWaitForTheMode) {
         post(SetMode{Mode::AUTO});
         const auto waiting = post(Mdi{"G21 G1 X7 F600"}), text = post(OperatorText{"reported anyway"});
         ASSERT_EQ(ask(stop), Progress::DONE);
-        EXPECT_EQ(reason(waiting), "it came before a stop");
+        EXPECT_EQ(reason(waiting), "the command was sent before a stop");
         EXPECT_EQ(progress(text), Progress::DONE);
         ask(SetState{State::ESTOP_RESET});
         ask(SetState{State::ON});

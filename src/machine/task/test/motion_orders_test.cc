@@ -50,7 +50,7 @@ TEST_F(TaskTest, WhatMotionCarriesOutByItselfReachesIt) {
 
 TEST_F(TaskTest, AProgramGoesBackAndForwardByCommandWhileItRuns) {
     EXPECT_EQ(ask(ReverseProgram{}), Progress::REFUSED);
-    EXPECT_EQ(reason(request), "no program runs");
+    EXPECT_EQ(reason(request), "no program is running");
     open("G21 F600\nG1 X7\nM2\n");
     motion.isHolding = true;
     const auto run = post(RunProgram{});

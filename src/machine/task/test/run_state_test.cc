@@ -179,11 +179,11 @@ TEST(RunState, WhatEachEventDoesInEveryState) {
 
 TEST(RunState, RefusalsSayWhatIsMissing) {
     RunState idle;
-    EXPECT_EQ(idle.take(PAUSE).error().message, "no program runs that could be paused");
+    EXPECT_EQ(idle.take(PAUSE).error().message, "no running program to pause");
     EXPECT_EQ(idle.take(RESUME).error().message, "nothing is paused");
     RunState going = in(RunPhase::READING, Hold::GOING);
     EXPECT_EQ(going.take(START).error().message, "a program or MDI line is already running");
-    EXPECT_EQ(idle.take(STEP).error().message, "no program runs that could be stepped");
+    EXPECT_EQ(idle.take(STEP).error().message, "no running program to step");
     EXPECT_EQ(going.take(RESUME).error().message, "nothing is paused");
 }
 

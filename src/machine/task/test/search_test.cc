@@ -281,10 +281,9 @@ TEST_F(SearchTest, RefusalsNameTheNearestLineThatCan) {
         "the state at line 4 depends on an input (M66) in line 2; the nearest line before it that can is 2");
     EXPECT_EQ(refusal("G21 F600\nG38.3 Z-5\nG0 X2\nM2\n", 3),
               "the state at line 3 depends on a probe in line 2; the nearest line before it that can is 2");
-    EXPECT_EQ(
-        refusal("o1 sub\nG0 X1\no1 endsub\nG21 F600\no1 call\nM2\n", 2),
-        "line 2 is in subroutine o<1>, which line 5 is the first to call; the nearest line before it that "
-        "can is 5");
+    EXPECT_EQ(refusal("o1 sub\nG0 X1\no1 endsub\nG21 F600\no1 call\nM2\n", 2),
+              "line 2 is in subroutine o<1>, whose first call is in line 5; the nearest line before it that "
+              "can is 5");
     EXPECT_EQ(refusal("G21\no1 if [0]\nG0 X1\no1 endif\nG0 X2\nM2\n", 3),
               "line 3 is never reached; the next line that is reached is 5");
     EXPECT_NE(refusal("G21\nG1 X1 X2\nG0 X2\nM2\n", 3).find(":2:"), std::string::npos);

@@ -420,7 +420,7 @@ TEST_F(ToolDataTest, ADatabaseThatDoesNotAgreeIsHeard) {
                                            "while read -r x; do echo \"NAK no such tool\"; done\n");
     ASSERT_EQ(error_, "");
     EXPECT_TRUE(tools.load_spindle(1).has_value()) << "the tool is loaded, independent of the database";
-    EXPECT_NE(told().find("does not agree to 'l T1   P0  ': NAK no such tool"), std::string::npos);
+    EXPECT_NE(told().find("rejects 'l T1   P0  ': NAK no such tool"), std::string::npos);
 }
 
 TEST_F(ToolDataTest, ADatabaseThatCannotWorkStopsTheStartByName) {

@@ -62,10 +62,10 @@ TEST_F(ClientTest, EachCommandEndsWithItsOutcomeAndReason) {
     EXPECT_EQ(a.outcome(first).progress, Progress::STARTED) << "not taken yet";
     cycle();
     EXPECT_EQ(a.outcome(first).progress, Progress::STARTED);
-    desk.tell(second, Progress::REFUSED, "no program runs");
+    desk.tell(second, Progress::REFUSED, "no program is running");
     EXPECT_EQ(a.outcome(first).progress, Progress::STARTED);
     EXPECT_EQ(a.outcome(second).progress, Progress::REFUSED);
-    EXPECT_EQ(a.outcome(second).reason, "no program runs");
+    EXPECT_EQ(a.outcome(second).reason, "no program is running");
     desk.tell(first, Progress::FAILED, "emergency stop");
     desk.tell(first, Progress::DONE, "");
     EXPECT_EQ(a.outcome(first).progress, Progress::FAILED) << "an end is final";

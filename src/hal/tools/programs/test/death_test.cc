@@ -145,7 +145,7 @@ TEST_F(Death, HalrunIsToldWhenAnotherProgramEndsItsRealtimeProcess) {
     EXPECT_EQ(status, 0) << "halrun -U says that it failed";
     const Ended ended = wait(halrun);
     EXPECT_EQ(ended.status, 1);
-    EXPECT_NE(ended.err.find("asked it to end"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("requested its end"), std::string::npos) << ended.err;
 }
 
 TEST_F(Death, RealtimeStartsStopsAndTellsWhatRuns) {
