@@ -89,7 +89,7 @@ it('makes a machine with a board, and offers its steps', async () => {
   }
   await until(async () => !(await page.getByTestId('make').isDisabled()), 'no fault');
   await page.getByTestId('make').click();
-  await untilText(page, 'trial', /It runs its first program/, 60_000);
+  await untilText(page, 'trial', /The test of the first program succeeded/, 60_000);
   await page.getByTestId('wizard-back').click();
   await page.getByTestId('commission-small_lathe/machine.ini').click();
   await page.getByTestId('steps-begin').waitFor();

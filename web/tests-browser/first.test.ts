@@ -78,7 +78,7 @@ it('creates a machine from answers, reports invalid ones, and tests it', async (
   await until(async () => !(await page.getByTestId('make').isDisabled()), 'no fault');
   expect(await page.getByTestId('folder').inputValue()).toBe(`${home}/millwright/configs/shop_gantry`);
   await page.getByTestId('make').click();
-  await untilText(page, 'trial', /It runs its first program/, 40_000);
+  await untilText(page, 'trial', /The test of the first program succeeded/, 40_000);
   const ini = readFileSync(join(home, 'millwright/configs/shop_gantry/machine.ini'), 'utf8');
   expect(ini).toContain('MACHINE = Shop gantry');
   expect(ini).toContain('MAX_LIMIT = 750.5');

@@ -79,7 +79,7 @@ describe('one touch', () => {
   it('sets the zero of one axis, and Undo restores the former one', async () => {
     await page.getByTestId('zero-X').click();
     await untilWork('0.000', '7.000', '20.000');
-    await untilText(page, 'zero-text', /G54: X set to zero.*Former offset: X 0\.000/s);
+    await untilText(page, 'zero-text', /G54: X set to zero.*Previous offset: X 0\.000/s);
     await page.getByTestId('zero-undo').click();
     await untilWork('12.000', '7.000', '20.000');
     await page.getByTestId('zero-undo').waitFor({ state: 'detached' });
