@@ -39,7 +39,7 @@ void examine_kernel(const std::string &root, diagnostics::Sink &sink) {
         sink.note(fmt::format("kernel {} has PREEMPT_RT", kernel.release));
     } else {
         sink.warning(fmt::format("kernel {} has no PREEMPT_RT: its latency is not bounded", kernel.release),
-                     {}, "a machine that moves needs linux-image-rt-amd64; a simulated one does not");
+                     {}, "a real machine needs linux-image-rt-amd64; a simulated machine does not");
     }
     const std::string clock =
         line_of(root + "/sys/devices/system/clocksource/clocksource0/current_clocksource");
@@ -66,7 +66,7 @@ void examine_processors(const std::string &root, diagnostics::Sink &sink) {
     governors.erase("");
     governors.erase("performance");
     if (!governors.empty()) {
-        sink.warning("the speed of processors is governed by '" + *governors.begin() + '\'', {},
+        sink.warning("the CPU frequency governor is '" + *governors.begin() + '\'', {},
                      "cpupower frequency-set -g performance, and C-states off in the BIOS");
     }
     std::ifstream info(root + "/proc/cpuinfo");

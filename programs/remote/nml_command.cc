@@ -77,7 +77,7 @@ void tell_where(const nml::Config &config, const nml::Server &server, diagnostic
         const bool served =
             buffer.tcp_port.has_value() || buffer.stcp_port.has_value() || buffer.udp_port.has_value();
         if (served && !isLoopback(buffer.host) && buffer.password_file.empty()) {
-            sink.warning(fmt::format("anyone who reaches {} over the network can use buffer '{}'",
+            sink.warning(fmt::format("any computer that reaches {} over the network can use buffer '{}'",
                                      buffer.host, buffer.name),
                          buffer.place, "require a password: passwd=FILE");
         }

@@ -33,7 +33,7 @@ std::unexpected<Error> in_use(const std::string &name, const OwnerOf &owner_of) 
         return fail(why(name) + path + " belongs to user " + std::to_string(status.st_uid), {},
                     "remove the file as that user, or set MILLWRIGHT_INSTANCE to another name");
     }
-    std::string holder = "a process that is alive";
+    std::string holder = "a running process";
     const int fd = ::shm_open(('/' + name).c_str(), O_RDONLY | O_CLOEXEC, 0);
     void *base = fd >= 0 && status.st_size >= static_cast<off_t>(HEADER_SIZE)
                      ? ::mmap(nullptr, HEADER_SIZE, PROT_READ, MAP_SHARED, fd, 0)
@@ -183,7 +183,7 @@ Result<SharedMemory> SharedMemory::attach(const std::string &name, const SharedL
     const Header *header = memory.header();
     // Acquire: pairs with the creator's release of the magic.
     if (header->magic.load(std::memory_order_acquire) != MAGIC) {
-        return fail(why(name) + "is not Millwright's, or not complete");
+        return fail(why(name) + "does not belong to Millwright, or is not complete");
     }
     if (header->abi_version != layout.abi_version || header->layout_hash != layout.layout_hash) {
         return fail(why(name) + "has version " + std::to_string(header->abi_version) + ", this program " +

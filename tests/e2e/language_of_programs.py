@@ -59,7 +59,7 @@ OTHER_ERRORS = (
     ('halcmd -x', 'unknown option -x', 'unbekannte Option -x', 'opción desconocida -x'),
     ('halcmd -i nosuch.ini show', 'nosuch.ini', 'nosuch.ini', 'nosuch.ini'),
     ('halcmd -h nosuch', "unknown command 'nosuch'", "unbekannter Befehl 'nosuch'", "orden desconocida 'nosuch'"),
-    ('halcmd -U', 'options -I, -U and -T are those of halrun', 'die Optionen -I, -U und -T sind die von halrun', 'las opciones -I, -U y -T son de halrun'),
+    ('halcmd -U', 'options -I, -U and -T belong to halrun', 'die Optionen -I, -U und -T sind die von halrun', 'las opciones -I, -U y -T son de halrun'),
     ('halrun nosuch.hal', "HAL file 'nosuch.hal' not found", "die HAL-Datei 'nosuch.hal' ist nicht zu finden", "no se encuentra el archivo HAL 'nosuch.hal'"),
     ('halcmd_twopass a.ini', 'an INI file can only be used here when it has [HAL]TWOPASS', 'eine INI-Datei ist hier nur möglich, wenn sie [HAL]TWOPASS hat',
      'un archivo INI solo se puede usar aquí si tiene [HAL]TWOPASS'),

@@ -99,7 +99,7 @@ def main():
         one = start('tools.ngc')
         one.wait_for(r'\[y/n\]')
         one.key('y')
-        expect(one.wait_for('put tool 1 in'), 'requests the tool', one)
+        expect(one.wait_for('load tool 1'), 'requests the tool', one)
         here = len(one.text)
         expect(one.stays_without('program stop', 1.0, here), 'waits for the person with the tool', one)
         one.key('t')

@@ -132,7 +132,7 @@ def one_after_the_other(bench):
     expect(simulated.returncode == 0 and abs(bench.position() - 5) < 1e-6, 'a simulation leaves it alone', simulated.stderr)
 
     tools = bench.run('tools.ngc')
-    expect(tools.wait_for('put tool 1 in'), 'the client receives the tool number', tools.text)
+    expect(tools.wait_for('load tool 1'), 'the client receives the tool number', tools.text)
     time.sleep(0.5)
     expect(tools.process.poll() is None, 'and waits')
     bench.set_pin('hal_manualtoolchange.change_button', '1')

@@ -287,19 +287,19 @@ TEST_P(DoubtTest, IsRefusedWithTheReasonAndTheNearestLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, DoubtTest,
-    ::testing::Values(Doubtful{"Input", "G21 F600\nG0 Z5\nM66 P0 L0\nG1 X20\nG1 X0\nM2\n", 5,
-                               "the state at line 5 depends on an input (M66) in line 3; the nearest line "
-                               "before it that can is 3"},
-                      Doubtful{"Probe", "G21 F600\nG0 Z5\nG38.3 Z4.5\nG1 X20\nG1 X0\nM2\n", 5,
-                               "the state at line 5 depends on a probe in line 3; the nearest line before it "
-                               "that can is 3"},
-                      Doubtful{
-                          "Hal", "G21 F600\nG0 Z5\n#1 = #<_hal[motion.in-position]>\nG1 X20\nG1 X0\nM2\n", 5,
-                          "the state at line 5 depends on the HAL value motion.in-position in line 3; the "
-                          "nearest line before it that can is 3"},
-                      Doubtful{"Table", "G21 F600\nG0 Z5\nG10 L0\nG1 X20\nG1 X0\nM2\n", 5,
-                               "the state at line 5 depends on the reloaded tool table (G10 L0) in "
-                               "line 3; the nearest line before it that can is 3"}),
+    ::testing::Values(
+        Doubtful{"Input", "G21 F600\nG0 Z5\nM66 P0 L0\nG1 X20\nG1 X0\nM2\n", 5,
+                 "the state at line 5 depends on an input (M66) in line 3; the nearest possible line before "
+                 "it is 3"},
+        Doubtful{
+            "Probe", "G21 F600\nG0 Z5\nG38.3 Z4.5\nG1 X20\nG1 X0\nM2\n", 5,
+            "the state at line 5 depends on a probe in line 3; the nearest possible line before it is 3"},
+        Doubtful{"Hal", "G21 F600\nG0 Z5\n#1 = #<_hal[motion.in-position]>\nG1 X20\nG1 X0\nM2\n", 5,
+                 "the state at line 5 depends on the HAL value motion.in-position in line 3; the nearest "
+                 "possible line before it is 3"},
+        Doubtful{"Table", "G21 F600\nG0 Z5\nG10 L0\nG1 X20\nG1 X0\nM2\n", 5,
+                 "the state at line 5 depends on the reloaded tool table (G10 L0) in "
+                 "line 3; the nearest possible line before it is 3"}),
     [](const auto &one) { return one.param.name; });
 
 TEST_F(RecoveryTest, BeforeTheDoubtItIsOffered) {
@@ -368,10 +368,9 @@ TEST_F(RecoveryTest, ARefusedStartAtALineKeepsAnOlderOffer) {
 TEST_F(RecoveryTest, TheMiddleOfAThreadIsRefused) {
     run_to("G21 F600\nS300 M3\nG0 X0 Y0 Z5\nG33 Z-5 K1\nG33 Z-20 K1\nG0 X2\nM2\n", 5);
     cut_and_come_up();
-    EXPECT_NE(
-        rig->recover().find("in the middle of moves that follow the spindle; the nearest line before it "
-                            "that can is 4"),
-        std::string::npos);
+    EXPECT_NE(rig->recover().find(
+                  "in the middle of moves that follow the spindle; the nearest possible line before it is 4"),
+              std::string::npos);
     EXPECT_FALSE(offer().isOffered);
 }
 

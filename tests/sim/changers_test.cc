@@ -249,7 +249,7 @@ TEST_F(ChangerTest, AStartAtALineOfARandomChangerSetsTheToolInTheSpindleToo) {
     ask(task::OpenProgram{(folder_ / "p.ngc").string()});
     run_ = post(task::RunProgram{3});
     EXPECT_EQ(finish(), task::Progress::FAILED);
-    EXPECT_NE(reason(run_).find("(M61) in line 2; the nearest line before it that can is 2"),
+    EXPECT_NE(reason(run_).find("(M61) in line 2; the nearest possible line before it is 2"),
               std::string::npos)
         << reason(run_);
     EXPECT_NE(read("sim.tbl").find("T2 P11 Z5"), std::string::npos) << read("sim.tbl");

@@ -157,7 +157,7 @@ describe('the note of a tool change', () => {
     await page.getByTestId('tool-change-done').click();
     await untilText(page, 'tool', 'T1');
     await tab('messages');
-    await untilText(page, 'messages', /put tool 1 in/);
+    await untilText(page, 'messages', /load tool 1/);
     expect(await page.getByTestId('messages').innerText()).not.toMatch(/\bkey\b/);
   });
 });

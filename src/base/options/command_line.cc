@@ -90,7 +90,7 @@ void CommandLine::texts(const std::string &names, const std::string &what, const
 void CommandLine::on_or_off(const std::string &names, const std::string &doc, bool &into) {
     take(names, 1, "on|off", doc, [&into](const Words &words) -> Result<> {
         if (words[0] != "on" && words[0] != "off") {
-            return fail("it is on or off, not '" + words[0] + "'");
+            return fail("use on or off, not '" + words[0] + "'");
         }
         into = words[0] == "on";
         return {};

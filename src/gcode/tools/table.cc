@@ -93,7 +93,7 @@ void Table::take_tool(const Result<ToolEntry> &made, Reading &reading) {
     const bool has_pocket = tool.entry.pocketno != NO_POCKET;
     if (!has_pocket && isRandom()) {
         reading.skipped.warning(fmt::format("tool {} has no P word (its pocket)", tool.entry.toolno), place,
-                                "a random changer must know where each tool is");
+                                "a random tool changer needs the pocket of each tool");
         return;
     }
     if (!has_pocket) {

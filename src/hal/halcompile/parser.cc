@@ -125,7 +125,7 @@ class Parser {
         return fail(word.empty() ? std::string("a declaration is expected here")
                                  : fmt::format("'{}' is not a declaration", word),
                     place,
-                    near.empty() ? "the code starts after ;; on a separate line"
+                    near.empty() ? "put ;; on a separate line before the code"
                                  : fmt::format("did you mean '{}'?", near));
     }
 
@@ -163,7 +163,7 @@ class Parser {
             return std::unexpected(doc.error());
         }
         if (!component_.name.empty()) {
-            return fail("there is a 'component' already", place, "a file describes one component");
+            return fail("there is a 'component' already", place, "a file can describe only one component");
         }
         component_.place = std::move(place);
         component_.name = std::move(*word);
@@ -235,9 +235,8 @@ class Parser {
         constexpr std::string_view IF = "if";
         auto text = scanner_.take_expression(stops, IF);
         if (text && scanner_.isWord(IF)) {
-            return fail(
-                "';' is expected before 'if'", scanner_.place(),
-                "the condition comes before the start value, once: pin in bit NAME if CONDITION = VALUE");
+            return fail("';' is expected before 'if'", scanner_.place(),
+                        "write one condition before the start value: pin in bit NAME if CONDITION = VALUE");
         }
         return text;
     }

@@ -289,7 +289,7 @@ int run(const std::string &program, const std::vector<std::string> &arguments) {
         return 1;
     }
     if (!options->output.empty() && options->files.size() > 1) {
-        language::tell("halcompile: -o is for one file");
+        language::tell("halcompile: -o is possible with one file only");
         return 1;
     }
     bool good = true;

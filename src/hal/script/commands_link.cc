@@ -78,7 +78,7 @@ Result<> run_net(Session &session, const Call &call) {
     const Word &signal = call.words[0];
     if (hal.pins().has(signal.text) && !hal.signals().has(signal.text)) {
         return fail(fmt::format("signal name '{}' is the name of a pin", signal.text), signal.place,
-                    "the signal comes first: net SIGNAL PIN...");
+                    "write the signal first: net SIGNAL PIN...");
     }
     std::vector<std::string> pins;
     std::vector<const Word *> placeholders;

@@ -161,8 +161,8 @@ class RealtimeMachine final : public Machine {
     }
     /// A script or a disk that does not respond still uses task, so task cannot be destroyed.
     [[noreturn]] void end_beside_call() {
-        parts_.sink.error(
-            "the interpreter is still busy (a slow disk, or Python): the machine ends without it");
+        parts_.sink.error("the interpreter is still busy (a slow disk, or Python): the machine ends without "
+                          "waiting for it");
         side_->remove_mailbox();
         side_->finish_files();
         shut_down();

@@ -169,7 +169,7 @@ Flow<Finding> check_inputs(Stage &stage, int joint) {
 
 Flow<Finding> check_estop(Stage &stage, int joint) {
     if (!stage.plan().wiring.estop_pin.has_value()) {
-        co_return found("estop", stage, joint, Fault::NONE, "no input; the button of the screen acts");
+        co_return found("estop", stage, joint, Fault::NONE, "no input; the button on the screen is used");
     }
     Prompt free = by_hand("estop", "", "Release all emergency stop buttons.");
     const bool released = co_await stage.confirm(std::move(free));

@@ -40,7 +40,7 @@ constexpr std::array TEXTS{
          "ground, "
          "and a filter."},
     Text{Fault::LATE_THREAD, "late thread",
-         "The servo thread came late. `millwright doctor --latency 600` names what to change."},
+         "The servo thread was late. `millwright doctor --latency 600` shows the causes."},
     Text{Fault::STALLED, "motor stalls",
          "Steps are lost at the minimum speed as well. Check current, voltage and friction."},
     Text{Fault::DRIVE, "drive fault", "Read the fault code of the drive."},

@@ -255,10 +255,9 @@ void Writer::Core::do_file(Job &job) {
     file.done = job.number;
     file.failure = written.has_value() ? std::nullopt : std::optional(written.error());
     if (file.failure.has_value() && !job.awaited && !file.reported) {
-        troubles_.push_back(
-            fmt::format("{}. Its content is kept in memory, and written again with the next change and at "
-                        "the end of the machine",
-                        file.failure->message));
+        troubles_.push_back(fmt::format("{}. The content stays in memory and is written with the next change "
+                                        "and at the end of the machine",
+                                        file.failure->message));
     }
     file.reported = file.failure.has_value() && (file.reported || !job.awaited);
     if (file.failure.has_value()) {

@@ -9,11 +9,11 @@ constexpr std::int64_t CHANGE_TIME_NS = 100000000;
 std::string text_of(ToolHand hand, std::int32_t number) {
     if (hand == ToolHand::SIMULATED) {
         return number > 0
-                   ? "tool change: tool " + std::to_string(number) + " is put in by the simulated operator"
-                   : std::string("tool change: the tool is taken out by the simulated operator");
+                   ? "tool change: tool " + std::to_string(number) + " was loaded by the simulated operator"
+                   : std::string("tool change: the simulated operator removed the tool");
     }
-    return (number > 0 ? "tool change: put tool " + std::to_string(number) + " in"
-                       : std::string("tool change: take the tool out")) +
+    return (number > 0 ? "tool change: load tool " + std::to_string(number) + ""
+                       : std::string("tool change: remove the tool")) +
            "; confirm on a screen or with the pin hal_manualtoolchange.change_button";
 }
 

@@ -70,7 +70,7 @@ Result<std::unique_ptr<task::ToolStore>> ToolDatabase::start(const Setup &setup,
 
 Result<> ToolDatabase::ask(Kind kind, const std::string &line) {
     if (!trouble_.empty()) {
-        return fail(trouble_, {}, "end the machine and start it again once the program works");
+        return fail(trouble_, {}, "correct the program, then end the machine and start it again");
     }
     if (const Result<> written = program_.write(line); !written.has_value()) {
         give_up(written.error().message);

@@ -84,7 +84,7 @@ void ToolFile::step() {
 
 void ToolFile::drop_reload() {
     if (std::exchange(reading_, nullptr) != nullptr) {
-        read_ = fail("the tool table is not read again: the work was stopped");
+        read_ = fail("the tool table was not reloaded: the program was stopped");
     }
 }
 

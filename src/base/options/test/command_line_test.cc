@@ -110,7 +110,7 @@ TEST_F(CommandLineTest, ErrorsNameTheOptionAndTheNearestOne) {
     EXPECT_EQ(error({"--patience", "nan"}), "option --patience: 'nan' is not a number from 0.001 to 600");
     EXPECT_EQ(error({"--count", "2.5"}), "option --count: '2.5' is not a whole number from 1 to 100");
     EXPECT_EQ(error({"--count", "101"}), "option --count: '101' is not a whole number from 1 to 100");
-    EXPECT_EQ(error({"--optional-stop", "maybe"}), "option --optional-stop: it is on or off, not 'maybe'");
+    EXPECT_EQ(error({"--optional-stop", "maybe"}), "option --optional-stop: use on or off, not 'maybe'");
 }
 
 TEST(CommandLine, WordsWithoutAPlaceAreRefused) {

@@ -141,7 +141,7 @@ Step Flow::percent() {
                                      call_name(levels_.top(), names_)));
     }
     if (executor_.modes.spline.order != 0) {
-        return fail_here("The file ends inside of a NURBS: G5.3 ends it");
+        return fail_here("The file ends inside a NURBS: end the NURBS with G5.3");
     }
     executor_.canon.take(Finish{});
     parts_.commit();

@@ -10,7 +10,7 @@
 namespace mw::gcode::detail {
 namespace {
 
-constexpr const char *FORBIDDEN = "the effect of Python code here is known only when it runs";
+constexpr const char *FORBIDDEN = "the effect of Python code is unknown before it runs";
 
 ScriptOutcome forbidden() {
     ScriptOutcome outcome;

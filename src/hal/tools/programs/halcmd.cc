@@ -23,9 +23,9 @@ Runs HAL commands in the running realtime process.
 
   -f [FILE]  run the commands of FILE, or of standard input
   -i INI     take [SECTION]NAME from this INI file
-  -k         keep going after failed commands
-  -q         say only what failed (default)      -Q  not even that
-  -v         say what each command has done      -V  and each command before it runs
+  -k         continue after failed commands
+  -q         print only errors (default)         -Q  print nothing
+  -v         print the result of each command    -V  also each command before it runs
   -s         answers for scripts: no titles, names instead of numbers
   -e         repeat each command                 -R  accepted: the lock of HAL frees itself
   -h [COMMAND]  this help, or that of a command
@@ -118,7 +118,7 @@ int halcmd(const std::vector<std::string> &arguments) {
         return show_help(*line);
     }
     if (line->interactive || line->killing || line->wants_tcl) {
-        return fail_with(Error{"options -I, -U and -T are those of halrun", {}, {}});
+        return fail_with(Error{"options -I, -U and -T belong to halrun", {}, {}});
     }
     IniOption ini;
     const Result<> loaded = ini.load(line->ini_path);

@@ -20,8 +20,8 @@ Starts a realtime process, runs the commands of FILE in it, and ends it. FILE is
 followed by its arguments), or an INI file with [HAL]TWOPASS. Without FILE, or after it with -I or -T, reads commands
 from standard input: HAL commands, or Tcl with -T.
 
-  -i INI  take [SECTION]NAME from this INI file   -k  keep going after failed commands
-  -s      answers for scripts                     -q -Q -v -V  say less or more (see halcmd -h)
+  -i INI  take [SECTION]NAME from this INI file   -k  continue after failed commands
+  -s      answers for scripts                     -q -Q -v -V  fewer or more messages (see halcmd -h)
   -U      ends a realtime process that was left running
 )";
 

@@ -15,7 +15,7 @@ constexpr const char *USAGE = R"(usage: halcmd_twopass [OPTIONS] INI
 
 Runs the files of [HAL]HALFILE in two passes: loadrt lines for one module are merged. INI needs [HAL]TWOPASS.
 
-  -k  keep going after failed commands    -q -Q -v -V  say less or more (see halcmd -h)
+  -k  continue after failed commands    -q -Q -v -V  fewer or more messages (see halcmd -h)
 )";
 
 int fail_with(const Error &error) {

@@ -60,7 +60,7 @@ Settings joint_settings(const messages::SetJointHoming &c) {
 
 Result<> check_settings(const Settings &changes, const motion::Settings &current, const JointsNow &joints) {
     if (joints.homing) {
-        return fail("not while joints home");
+        return fail("not possible while joints are homing");
     }
     motion::Settings after = current;
     for (const SetParameter &change : changes) {

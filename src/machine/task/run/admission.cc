@@ -14,7 +14,7 @@ using Row = std::array<Cell, SITUATIONS>;
 constexpr Cell TAKEN = nullptr;
 constexpr Cell ESTOP = "the machine is in emergency stop", OFF = "the machine is not on";
 constexpr Cell RUNS = "a program or MDI line is already running",
-               NOT_WHILE = "not while a program or MDI line runs";
+               NOT_WHILE = "not possible while a program or MDI line is running";
 constexpr Cell NEEDS_AUTO = "running a program needs auto mode",
                NEEDS_MDI = "Must be in MDI mode to issue MDI command",
                NEEDS_MANUAL = "this needs manual mode",
@@ -25,7 +25,7 @@ constexpr Cell NO_WAY = "no approach is proposed", CONFIRM = "the proposed appro
                IS_AWAY = "the axes of the program are released: resume the program first";
 constexpr Cell NOT_HELD = "the axes can only be released while a program is paused",
                NOT_LINES = "the axes of an MDI line cannot be released: abort the line";
-constexpr Cell ON = "only while the machine is off";
+constexpr Cell ON = "only possible while the machine is off";
 
 constexpr Row all(Cell cell) {
     Row row{};

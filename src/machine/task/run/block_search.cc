@@ -45,7 +45,7 @@ BlockSearch::Outcome BlockSearch::refuse(const std::string &why) {
 
 BlockSearch::Outcome BlockSearch::refuse_before(const std::string &why) {
     const int nearest = last_possible_ > 0 ? last_possible_ : 1;
-    return refuse(fmt::format("{}; the nearest line before it that can is {}", why, nearest));
+    return refuse(fmt::format("{}; the nearest possible line before it is {}", why, nearest));
 }
 
 /// Called before the line is run.

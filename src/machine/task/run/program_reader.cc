@@ -194,7 +194,7 @@ void ProgramReader::return_to_executed() {
 
 Result<> ProgramReader::begin_search(int line) {
     if (rs274_ == nullptr) {
-        return fail("only programs in G-code (RS-274/NGC) can begin at a line", {},
+        return fail("only programs in G-code (RS-274/NGC) can start from a line", {},
                     "[TASK]INTERPRETER names another language");
     }
     kept_.modes = std::make_unique<gcode::InterpreterState>(rs274_->state());

@@ -17,9 +17,9 @@ std::string refusal_of(const journal::Run &run) {
     if (!run.doubt.has_value() || run.progress->block <= run.doubt->block) {
         return {};
     }
-    return fmt::format("the state at line {} depends on {} in line {}; the nearest line before it that can "
-                       "is {}",
-                       run.progress->line, run.doubt->what, run.doubt->line, std::max(1, run.doubt->line));
+    return fmt::format(
+        "the state at line {} depends on {} in line {}; the nearest possible line before it is {}",
+        run.progress->line, run.doubt->what, run.doubt->line, std::max(1, run.doubt->line));
 }
 
 void Recovery::offer_run(journal::Run run) {

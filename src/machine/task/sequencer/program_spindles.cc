@@ -80,7 +80,7 @@ Result<double> ProgramSpindles::stepped_rpm(int spindle, double step_rpm) const 
         return fail(fmt::format("spindle {} is stopped", spindle));
     }
     if (state.css_max_rpm > 0) {
-        return fail(fmt::format("spindle {} keeps a constant surface speed", spindle));
+        return fail(fmt::format("spindle {} is in constant surface speed mode (G96)", spindle));
     }
     return state.direction * std::max(SLOWEST_RPM, state.speed + step_rpm);
 }

@@ -78,7 +78,7 @@ TEST_F(RunFromLineTest, AnAbortDropsTheProposalAndWhatWasCalculated) {
 TEST_F(RunFromLineTest, ALineThatCannotIsRefusedWithTheNearestOneThatCan) {
     const auto run = from("G21 F600\nG0 Z5\nG41.1 D2 G1 X5\nY10\nX20\nG40 Y20\nM2\n", 5);
     EXPECT_EQ(progress(run), Progress::FAILED);
-    EXPECT_NE(reason(run).find("the nearest line before it that can is 3"), std::string::npos) << reason(run);
+    EXPECT_NE(reason(run).find("the nearest possible line before it is 3"), std::string::npos) << reason(run);
     EXPECT_EQ(task.status().task.interp_state, InterpState::IDLE);
     EXPECT_EQ(ask(RunProgram{-1}), Progress::REFUSED);
     EXPECT_EQ(ask(RunProgram{}), Progress::DONE) << reason(request);

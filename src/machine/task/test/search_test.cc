@@ -268,22 +268,20 @@ class SearchTest : public testing::Test {
 TEST_F(SearchTest, RefusalsNameTheNearestLineThatCan) {
     const std::string comp = "G21 F600\nG0 X0 Y0 Z5\nG41.1 D2 G1 X5\nY10\nX20\nG40 Y20\nG0 X30\nM2\n";
     EXPECT_EQ(refusal(comp, 5), "no program can start at line 5: cutter compensation is on at this line; the "
-                                "nearest line before it that can "
-                                "is 3");
+                                "nearest possible line before it is 3");
     EXPECT_EQ(refusal(comp, 3), "");
     EXPECT_EQ(refusal(comp, 8), "");
     EXPECT_EQ(refusal("G21 F600\nG0 Z5\nG81 X1 Z-1 R1\nX2\nX3\nG80\nG0 X9\nM2\n", 5),
-              "no program can start at line 5: it is in the middle of a canned cycle; the nearest line "
-              "before it that "
-              "can is 3");
+              "no program can start at line 5: it is in the middle of a canned cycle; the nearest possible "
+              "line before it is 3");
     EXPECT_EQ(
         refusal("G21 F600\nM66 P0 L3 Q1\nG0 X#5399\nG0 X2\nM2\n", 4),
-        "the state at line 4 depends on an input (M66) in line 2; the nearest line before it that can is 2");
+        "the state at line 4 depends on an input (M66) in line 2; the nearest possible line before it is 2");
     EXPECT_EQ(refusal("G21 F600\nG38.3 Z-5\nG0 X2\nM2\n", 3),
-              "the state at line 3 depends on a probe in line 2; the nearest line before it that can is 2");
+              "the state at line 3 depends on a probe in line 2; the nearest possible line before it is 2");
     EXPECT_EQ(refusal("o1 sub\nG0 X1\no1 endsub\nG21 F600\no1 call\nM2\n", 2),
-              "line 2 is in subroutine o<1>, whose first call is in line 5; the nearest line before it that "
-              "can is 5");
+              "line 2 is in subroutine o<1>, whose first call is in line 5; the nearest possible line before "
+              "it is 5");
     EXPECT_EQ(refusal("G21\no1 if [0]\nG0 X1\no1 endif\nG0 X2\nM2\n", 3),
               "line 3 is never reached; the next line that is reached is 5");
     EXPECT_NE(refusal("G21\nG1 X1 X2\nG0 X2\nM2\n", 3).find(":2:"), std::string::npos);

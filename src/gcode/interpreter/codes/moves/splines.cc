@@ -188,8 +188,9 @@ bool check_open_nurbs(const BlockValues &values, const State &state) {
                            code.group == Group::PLANE || code.group == Group::UNITS ||
                            (code.usesAxes && values.hasAxes());
         if (other && !of_nurbs) {
-            return values.fault->set(fmt::format("{} inside of a NURBS: G5.3 ends it", code_name(code.id)),
-                                     active.column);
+            return values.fault->set(
+                fmt::format("{} inside a NURBS: end the NURBS with G5.3 first", code_name(code.id)),
+                active.column);
         }
     }
     return true;

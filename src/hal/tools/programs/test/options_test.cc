@@ -44,7 +44,7 @@ TEST_F(Options, WrongOnesAreRefused) {
     EXPECT_NE(unknown.err.find("unknown option -x"), std::string::npos);
     EXPECT_NE(run({"halrun", "-i"}).err.find("option -i needs the name of an INI file"), std::string::npos);
     EXPECT_NE(run({"halrun", "-i", "nosuch.ini", "a.hal"}).err.find("nosuch.ini"), std::string::npos);
-    EXPECT_NE(run({"halcmd", "-U"}).err.find("those of halrun"), std::string::npos);
+    EXPECT_NE(run({"halcmd", "-U"}).err.find("belong to halrun"), std::string::npos);
     EXPECT_NE(run({"halcmd", "show", "pin"}).err.find("no realtime process is running"), std::string::npos);
     EXPECT_NE(run({"halrun", "nosuch.hal"}).err.find("HAL file 'nosuch.hal' not found"), std::string::npos);
 }

@@ -166,7 +166,7 @@ export const en = {
   'choice.retract.safe': 'Safe height',
 
   'why.feed_rev': 'A cautious value for steel. Use the value of the insert maker.',
-  'why.speed_mode': 'Constant surface speed makes an even face; rev/min is for small parts and threads.',
+  'why.speed_mode': 'Constant surface speed gives an even finish; rev/min is for small parts and threads.',
   'why.limit_speed': 'Maximum speed of chuck and part.',
   'why.nose': 'Half of the diameter in the tool table.',
   'why.tool_edge': 'The edge at Z 0 of the tool offset.',
