@@ -62,9 +62,9 @@ constexpr std::array SPINDLE_ORDERS = {
 };
 constexpr std::array DISPLAY_ORDERS = {
     Order{"MIN_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "no jog speed is possible"},
-    Order{"DEFAULT_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "jogs start at the latter"},
+    Order{"DEFAULT_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "jogs start at the maximum speed"},
     Order{"MIN_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "no jog speed is possible"},
-    Order{"DEFAULT_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "jogs start at the latter"},
+    Order{"DEFAULT_ANGULAR_VELOCITY", "MAX_ANGULAR_VELOCITY", "jogs start at the maximum speed"},
 };
 constexpr std::array TRAJ_ORDERS = {
     Order{"DEFAULT_LINEAR_VELOCITY", "MAX_LINEAR_VELOCITY", "the latter is used"},
