@@ -33,7 +33,7 @@ Result<std::unique_ptr<Commissioner>> Commissioner::open(CommissionSetup setup) 
         return fail(planned.faults[0].key + ": " + planned.faults[0].text);
     }
     if (!planned.plan.hasBoard()) {
-        return fail("the motors of this machine are simulated: it has nothing to check", {},
+        return fail("the motors of this machine are simulated: there is nothing to check", {},
                     "drives=stepper or drives=servo describes a machine with hardware");
     }
     std::unique_ptr<Commissioner> made(new Commissioner(std::move(setup)));

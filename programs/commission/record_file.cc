@@ -158,7 +158,7 @@ Result<std::vector<Recorded>> read_record(const std::string &folder) {
     const auto steps = json.is_object() ? json.find("steps") : json.end();
     if (!json.is_object() || steps == json.end() || !steps->is_array()) {
         return fail("the record of commissioning cannot be read", {path_of(folder), 0, 0},
-                    "move the file away to begin again");
+                    "move the file to another folder to start again");
     }
     std::vector<Recorded> record;
     for (const Json &step : *steps) {

@@ -135,7 +135,7 @@ int command_write(const std::vector<std::string> &arguments) {
         return reject("write",
                       !parsed.has_value()     ? parsed.error().str()
                       : !isFolder(words.rest) ? "needs a folder: millwright commission write FOLDER kind=mill"
-                                              : "--keep and --replace exclude each other",
+                                              : "--keep and --replace cannot be combined",
                       2);
     }
     const std::string &folder = words.rest[0];

@@ -67,7 +67,7 @@ void judge_latency(const hal::view::LatencyFigures &figures, diagnostics::Sink &
     const double longer_ns =
         std::max(1.0, std::ceil(static_cast<double>(jitter_ns) / TOLERABLE / STEP_NS)) * STEP_NS;
     const std::string otherwise =
-        longer_ns <= LONGEST_NS ? fmt::format("; else a period of {:.0f} ns", longer_ns) : "";
+        longer_ns <= LONGEST_NS ? fmt::format("; or use a period of {:.0f} ns", longer_ns) : "";
     sink.warning(what + ": " + way, {}, "first follow the warnings about kernel and processors" + otherwise);
 }
 

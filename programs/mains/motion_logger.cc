@@ -97,7 +97,7 @@ mw::Result<> run(const std::string &path) {
         }
     }
     if (static_cast<motion::Channels *>(*block)->magic == motion::Channels::MAGIC) {
-        return fail("a motion controller is loaded already", {}, "motion-logger takes the place of motmod");
+        return fail("a motion controller is loaded already", {}, "motion-logger replaces motmod");
     }
     auto *const channels = new (*block) motion::Channels();
     motion::StandIn stand_in(*channels, [&log](const std::string &line) { log.say(line); });

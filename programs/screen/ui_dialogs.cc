@@ -60,7 +60,7 @@ std::vector<DialogFacts> single_messages(const ini::IniFile &ini, diagnostics::S
         const IniEntry *const first = pins.empty() ? (texts.empty() ? types[0] : texts[0]) : pins[0];
         sink.error("[DISPLAY] has " + std::to_string(pins.size()) + " MESSAGE_PINNAME, " +
                        std::to_string(texts.size()) + " MESSAGE_TEXT and " + std::to_string(types.size()) +
-                       " MESSAGE_TYPE: each message needs one of each; the screen shows none of them",
+                       " MESSAGE_TYPE: each message needs all three; the screen shows no message",
                    first->place);
         return {};
     }

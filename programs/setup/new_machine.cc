@@ -35,7 +35,7 @@ Result<> write_files(const fs::path &folder, const std::vector<setup::File> &fil
         const fs::path path = folder / file.name;
         fs::create_directories(path.parent_path(), error);
         if (error) {
-            return fail("cannot make the folder '" + path.parent_path().string() + "': " + error.message());
+            return fail("cannot create the folder '" + path.parent_path().string() + "': " + error.message());
         }
         if (auto written = write_file_atomically(path.string(), file.text); !written.has_value()) {
             return written;
@@ -169,7 +169,7 @@ Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &pl
     }
     fs::create_directories(to.parent_path(), error);
     if (error) {
-        return fail("cannot make the folder '" + to.parent_path().string() + "': " + error.message());
+        return fail("cannot create the folder '" + to.parent_path().string() + "': " + error.message());
     }
     auto partly = UnfinishedFolder::create(to.string());
     if (!partly.has_value()) {
@@ -188,7 +188,7 @@ Result<NewMachine> make_machine(const std::string &folder, const setup::Plan &pl
         return std::unexpected(written.error());
     }
     if (!partly->become_target()) {
-        return fail("cannot make '" + to.string() + "': " + std::strerror(errno));
+        return fail("cannot create '" + to.string() + "': " + std::strerror(errno));
     }
     return NewMachine{(to / setup::INI_FILE).string(), (to / setup::PROGRAM_FILE).string()};
 }

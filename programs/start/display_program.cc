@@ -97,7 +97,7 @@ Result<DisplayProgram> DisplayProgram::start(const std::vector<std::string> &wor
     argv.push_back(nullptr);
     int failed[2];
     if (::pipe2(failed, O_CLOEXEC) != 0) {
-        return fail(std::string("cannot make a pipe: ") + std::strerror(errno));
+        return fail(std::string("cannot create a pipe: ") + std::strerror(errno));
     }
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();

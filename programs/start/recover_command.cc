@@ -34,7 +34,8 @@ struct RecoverWords {
             "command has ended.\n");
         line.flag("--show", "only show the interrupted program", only_shown);
         line.flag("--forget", "discard the interrupted program", forgetting);
-        line.flag("--yes", "move along the approach without asking: make sure that it is clear", agreed);
+        line.flag("--yes", "move along the approach without confirmation: make sure that it is clear",
+                  agreed);
         line.rest(rest);
         line.footer("exit status: 0 done or nothing to continue, 1 rejected or failed, 2 wrong usage\n");
         return line;

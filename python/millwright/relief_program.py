@@ -20,7 +20,7 @@ MOST_PIXELS = 64_000_000
 OPTIONS = (
     ('units', ('in', 'mm'), 'in', False, 'G20 or G21, and the unit of lengths here'),
     ('invert', bool, False, False, 'white is low, black is high'),
-    ('normalize', bool, False, False, 'the darkest pixel is black, the lightest one white'),
+    ('normalize', bool, False, False, 'stretch the brightness: darkest pixel black, lightest pixel white'),
     ('expand', ('none', 'white', 'black'), 'none', False, 'add a border of the tool width around the image'),
     ('tolerance', float, 0.001, True, 'path tolerance: half for the lines, half for blending (G64)'),
     ('pixel-size', float, 0.006, True, 'distance between pixels'),

@@ -77,11 +77,11 @@ Result<InstanceLock> InstanceLock::take(const std::string &instance) {
     InstanceLock lock;
     lock.fd_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (lock.fd_ < 0) {
-        return fail(std::string("cannot make a socket: ") + std::strerror(errno));
+        return fail(std::string("cannot create a socket: ") + std::strerror(errno));
     }
     if (::bind(lock.fd_, address.get(), address.size) != 0) {
         return errno != EADDRINUSE
-                   ? fail(std::string("cannot take the name of the instance: ") + std::strerror(errno))
+                   ? fail(std::string("cannot reserve the name of the instance: ") + std::strerror(errno))
                    : fail("Instance '" + instance + "' is in use by " + holder(address) + ".", {},
                           "End that machine, or set MILLWRIGHT_INSTANCE to another name.");
     }

@@ -377,7 +377,7 @@ Result<int> Table::put(ToolEntry entry) {
                                 MAX_POCKET));
     }
     if (const int owner = owner_of(entry.pocketno); owner != NOBODY) {
-        return fail(fmt::format("pocket {} is taken by tool {}", entry.pocketno, owner));
+        return fail(fmt::format("pocket {} is occupied by tool {}", entry.pocketno, owner));
     }
     add(entry);
     return index_of_tool(entry.toolno);

@@ -158,7 +158,7 @@ Result<std::unique_ptr<HostClient>> HostClient::start(const std::string &instanc
     }
     int ready[2];
     if (::pipe2(ready, O_CLOEXEC) != 0) {
-        return fail(std::string("cannot make a pipe: ") + std::strerror(errno));
+        return fail(std::string("cannot create a pipe: ") + std::strerror(errno));
     }
     int messages = -1;
     if (messages_to == MessagesTo::FILE) {

@@ -91,7 +91,7 @@ int count_extra_joints(IniReader &ini, int num_joints) {
             return static_cast<int>(*count);
         }
         ini.sink().error("[EMCMOT]EMCMOT: " + word + " is not possible", entry->place,
-                         "0 to [KINS]JOINTS - 1; the last joints are the extra ones");
+                         "0 to [KINS]JOINTS - 1; the extra joints are the last joints");
     }
     return 0;
 }

@@ -46,7 +46,7 @@ void read_limit(ini::IniReader &ini, Limits limits, const IniKey &both, Paramete
             ini.sink().warning('[' + section + ']' + std::string(both.name) + " and " +
                                    std::string(ini_key(forward).name) +
                                    " limit the same direction. The narrower limit is used.",
-                               entry->place, "Remove one of them.");
+                               entry->place, "Remove one of the two limits.");
         }
         limits.set(forward, own != nullptr ? narrower(own->value, value) : value);
     }

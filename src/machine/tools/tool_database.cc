@@ -229,16 +229,15 @@ Result<> ToolDatabase::set_entry(int index, const gcode::ToolEntry &entry) {
 }
 
 Result<> ToolDatabase::add(const gcode::ToolEntry &entry) {
-    return fail(fmt::format("tool {} was not added: the tool database '{}' keeps the tools. Add it there, "
+    return fail(fmt::format("tool {} was not added: the tool database '{}' contains the tools. Add it there, "
                             "then read the table again",
                             entry.toolno, program_.name()));
 }
 
 Result<> ToolDatabase::remove(int index) {
     const bool present = index >= 0 && index < count();
-    return fail(fmt::format("tool {} was not removed: the tool database '{}' keeps the tools. Remove it "
-                            "there, then read the table "
-                            "again",
+    return fail(fmt::format("tool {} was not removed: the tool database '{}' contains the tools. Remove it "
+                            "there, then read the table again",
                             present ? entry(index).toolno : -1, program_.name()));
 }
 

@@ -240,7 +240,7 @@ void CommandServer::accept(int index, Serial serial, Result<messages::Command> c
         // outcome can be reported.
         post(messages::MessageKind::OPERATOR_ERROR,
              "client " + std::to_string(client) +
-                 (is_new ? " has too many pending commands: one was dropped"
+                 (is_new ? " has too many pending commands: a command was dropped"
                          : " sent a command with a wrong number"));
         if (is_new) {
             note(serial, Progress::REFUSED);

@@ -33,8 +33,8 @@ std::string kinematics_reason(const Answer &answer) {
                "offset";
     case Reason::UNREACHABLE: return "the kinematics cannot reach the move";
     case Reason::SINGULAR:
-        return "the move begins at a singular pose of the kinematics, or passes through or near one: program "
-               "a path around it, or jog a joint away from it";
+        return "the move begins at or passes near a singular pose of the kinematics: program a path around "
+               "it, or jog a joint away from it";
     case Reason::POSE_UNKNOWN:
         return "forward kinematics found no pose for the current joint positions: jog single joints, or set "
                "the start pose of the kinematics module";
@@ -137,7 +137,7 @@ std::string reason_text(const Answer &answer) {
     case Reason::NOT_A_NUMBER: return "a value is not a finite number";
     case Reason::NO_WAY_BACK:
         return "reverse run is not possible: the path is not recorded (docs/developer/motion_commands.md)";
-    case Reason::BAD_ARC: return "the arc's centre, normal and end do not make a helix";
+    case Reason::BAD_ARC: return "the arc's centre, normal and end do not define a helix";
     case Reason::JOG_INHIBITED:
         return "jogging is inhibited: pin motion.jog-inhibit, motion.jog-stop or motion.jog-stop-immediate "
                "is TRUE";
@@ -245,8 +245,8 @@ std::string spindle_fault(const Fault &fault) {
             "{:.2f} revolutions: lengthen the ramp of its drive, raise the jerk limits, or use a finer pitch",
             i, fault.value);
     case FaultKind::TAP_TOO_SHALLOW:
-        return fmt::format("the hole is too shallow for the present speed of spindle {}: acceleration and "
-                           "reversal take {:.2f} times its depth; use a lower speed",
+        return fmt::format("the hole is too shallow for the current speed of spindle {}: acceleration and "
+                           "reversal need {:.2f} times its depth; use a lower speed",
                            i, fault.value);
     case FaultKind::TAP_LOST:
         return fmt::format("the tool lost synchronization with spindle {} in a rigid tap: the spindle did "

@@ -297,9 +297,8 @@ bool Flow::note_turn(const LoopTurn &turn) {
     }
     executor_.fault.line = turn.first;
     return executor_.fault.set("Endless loop: nothing changes between two passes", 0,
-                               "in a check, inputs, HAL pins and probes stay as they are: a loop that waits "
-                               "for one of them must end "
-                               "when #<_task> is 0");
+                               "in a check, inputs, HAL pins and probes do not change: a loop that waits for "
+                               "one of them must end when #<_task> is 0");
 }
 
 // ---------------------------------------------------------------------------------------------- failures

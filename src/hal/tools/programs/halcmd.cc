@@ -72,7 +72,7 @@ Result<JoinedHost> join(const CommandLine &line) {
                           line.words[0] == "source";
     if (!may_load) {
         return fail(fmt::format("no realtime process is running (instance '{}')", instance), {},
-                    "start one with halrun or halcmd loadrt");
+                    "start the realtime process with halrun or halcmd loadrt");
     }
     return join_or_start();
 }

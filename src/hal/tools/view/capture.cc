@@ -44,7 +44,7 @@ Result<std::string> enter_thread(Instance &hal, const std::string &wanted) {
     }
     if (chosen.empty()) {
         return fail(threads.empty() ? "there is no thread to record in" : "there are several threads", {},
-                    threads.empty() ? "loadrt threads, or start a machine" : "name one with --thread");
+                    threads.empty() ? "loadrt threads, or start a machine" : "select a thread with --thread");
     }
     const Result<> added = hal.threads().add_function(FUNCTION, chosen);
     if (!added) {
@@ -80,7 +80,7 @@ Result<Capture> Capture::open(Host &host, const std::string &thread) {
     auto *block = static_cast<CaptureBlock *>(*memory);
     if (block->magic != CAPTURE_MAGIC) {
         return fail("the module capture is of another version", {},
-                    "unload it and load that of this version");
+                    "unload the module and load the module of this version");
     }
     std::int32_t client = block->client.load();
     if (client != ::getpid() && isAlive(client)) {

@@ -240,8 +240,8 @@ Result<> capture(const CaptureCommand &command, volatile std::sig_atomic_t &stop
         return std::unexpected(record.error());
     }
     for (const std::string &name : record->moved) {
-        language::tell(
-            fmt::format("warning: '{}' was linked or unlinked meanwhile; its values may be old", name));
+        language::tell(fmt::format(
+            "warning: '{}' was linked or unlinked during the recording; its values may be old", name));
     }
     if (command.outputs.empty()) {
         std::fputs(to_csv(*record).c_str(), stdout);

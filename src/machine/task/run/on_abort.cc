@@ -54,7 +54,7 @@ Result<> OnAbort::read(ProgramReader &reader, AbortReason reason) const {
         const motion::SourceTag source = bad->source;
         queue.erase(bad, queue.end());
         return fail(SourcePlace{reader.canon().file_name(source.file_index), source.line, 0}.str() +
-                    ": after an abort nothing may move, start, stop the program or wait");
+                    ": the command after an abort must not move, start, stop the program or wait");
     }
     switch (step) {
     case gcode::Step::FILE_END: return {};

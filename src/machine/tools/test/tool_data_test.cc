@@ -169,7 +169,7 @@ TEST_F(ToolDataTest, WhatCannotBeAddedOrRemovedIsRefusedAndTheFileStays) {
     const std::string before = "T1 P1\nT2 P7\n";
     task::ToolStore &tools = open_file(before);
     EXPECT_EQ(tools.add(tool_of(1, 9)).error().message, "tool 1 is in the tool table already");
-    EXPECT_EQ(tools.add(tool_of(3, 7)).error().message, "pocket 7 is taken by tool 2");
+    EXPECT_EQ(tools.add(tool_of(3, 7)).error().message, "pocket 7 is occupied by tool 2");
     EXPECT_FALSE(tools.add(tool_of(0, 9)).has_value());
     EXPECT_FALSE(tools.add(tool_of(3, 1001)).has_value());
     ASSERT_TRUE(tools.load_spindle(1).has_value());
@@ -187,7 +187,7 @@ TEST_F(ToolDataTest, WhatCannotBeAddedOrRemovedIsRefusedAndTheFileStays) {
 
 TEST_F(ToolDataTest, ARandomChangersPocketsAreOneToolEach) {
     task::ToolStore &tools = open_file("T1 P0\nT2 P1\nT3 P2\n", true);
-    EXPECT_EQ(tools.add(tool_of(9, 2)).error().message, "pocket 2 is taken by tool 3");
+    EXPECT_EQ(tools.add(tool_of(9, 2)).error().message, "pocket 2 is occupied by tool 3");
     EXPECT_EQ(tools.add(tool_of(9, 1001)).error().message, "tool 9 has pocket 1001: pockets are 1 to 1000");
     EXPECT_EQ(tools.remove(0).error().message,
               "tool 1 is in the spindle: it is removed after the next tool change");
@@ -210,7 +210,7 @@ TEST_F(ToolDataTest, LinesThatContradictEachOtherAreNotAddedToNorLeftBehind) {
     const std::string before = "T1 P1 D3\nT1 P2 D4\nT2 P3 D5 ;first\nT2 P3 D5 ;again\nT3 P4\n";
     task::ToolStore &tools = open_file(before);
     EXPECT_EQ(tools.add(tool_of(1, 9)).error().message, "the tool table has contradictory lines for tool 1");
-    EXPECT_EQ(tools.add(tool_of(8, 2)).error().message, "pocket 2 is taken by tool 1");
+    EXPECT_EQ(tools.add(tool_of(8, 2)).error().message, "pocket 2 is occupied by tool 1");
     EXPECT_EQ(text("tool.tbl"), before);
     ASSERT_TRUE(tools.remove(tools.index_of_tool(2)).has_value());
     EXPECT_EQ(text("tool.tbl"), "T1 P1 D3\nT1 P2 D4\nT3 P4\n") << "its second line would bring it back";
