@@ -68,7 +68,7 @@ void TerminalPanel::begin_program(int lines) {
     stops_told_ = status().task.stops;
     if (attendance_ == Attendance::TERMINAL) {
         fmt::print(stderr, "{}",
-                   language::shown("keys: h or space hold, r resume, a abort, t the tool is changed\n"));
+                   language::shown("keys: h or space: hold, r: resume, a: abort, t: tool changed\n"));
     }
 }
 

@@ -51,9 +51,9 @@ struct UiWords {
     options::CommandLine line() {
         options::CommandLine line(
             "millwright ui MACHINE.ini [options]",
-            "Serves the operator's screen of a machine that 'millwright start' runs, to browsers on this "
-            "computer, and with\n--listen on others. It is a client: the machine runs without it, and it "
-            "waits for a machine that is not running yet. Ends at SIGINT or SIGTERM.\n");
+            "Serves the operator's screen of a machine that 'millwright start' runs to browsers on this "
+            "computer, with\n--listen also to other computers. It is a client: the machine runs without it. "
+            "It waits for a machine that is not running yet. Ends at SIGINT or SIGTERM.\n");
         line.number("--port", "N", "listen on 127.0.0.1:N (default 8850; 0: a free port)", port, 0, 65535);
         line.flag("--open", "open the screen in the browser of the desktop", opening);
         line.flag("--display",
@@ -160,7 +160,7 @@ void run(screen::Server &server, const UiWords &words, const machine::LoadedConf
         const auto filter =
             std::ranges::find_if(filters, [&](const auto &one) { return lower.ends_with(one.first); });
         if (filter == filters.end()) {
-            return Result<std::shared_ptr<screen::PieceQueue>>(fail("[FILTER] names no program for " + path));
+            return Result<std::shared_ptr<screen::PieceQueue>>(fail("[FILTER] has no program for " + path));
         }
         return readers.run(
             [command = filter->second, folder, path, made](screen::PieceQueue &pieces) {

@@ -348,7 +348,7 @@ Response Api::answer_filter(const Request &request) {
     }
     const auto made = made_of(name->second);
     if (!made.has_value()) {
-        return error_response(400, "[FILTER] names no program for '" + printable(name->second) + "'");
+        return error_response(400, "[FILTER] has no program for '" + printable(name->second) + "'");
     }
     Response response = stream(setup_.run_filter(*path, *made, {request.address, request.role}));
     response.type = response.pieces != nullptr ? "application/x-ndjson" : response.type;

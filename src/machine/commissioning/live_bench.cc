@@ -173,7 +173,7 @@ void LiveBench::switch_on(const std::vector<int> &joints) {
     waiting_.clear();
     homing_joint_ = NO_JOINT;
     if (!hasWatchdog()) {
-        last_error_ = "the machine has no watchdog of commissioning";
+        last_error_ = "the machine has no commissioning watchdog";
         return;
     }
     // If a drive cannot be kept off, the machine is not switched on.

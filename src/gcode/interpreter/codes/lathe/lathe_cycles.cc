@@ -172,7 +172,7 @@ Effect begin_lathe_cycle(GCode code, const BlockValues &values, State &state, Co
     static constexpr std::string_view OTHER_AXES = "yabcuvw";
     for (const char c : OTHER_AXES) {
         if (values.has(c)) {
-            return values.fail(fmt::format("{} takes no axis words but X and Z", name), c);
+            return values.fail(fmt::format("{} accepts only the axis words X and Z", name), c);
         }
     }
     LatheRequest request;

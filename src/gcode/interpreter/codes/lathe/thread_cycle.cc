@@ -53,7 +53,7 @@ bool check_thread_cycle(const BlockValues &values, const State &state, const Cod
         {state.plane != Plane::XZ, 'z', "G76 needs the plane G18"},
         {values.has('x') || values.has('y') || values.has('a') || values.has('b') || values.has('c') ||
              values.has('u') || values.has('v') || values.has('w'),
-         'x', "G76 takes no axis word but Z"},
+         'x', "G76 accepts only the axis word Z"},
         {plan.pitch <= 0.0, 'p', "The pitch P of G76 must be above 0"},
         {plan.first_cut <= 0.0, 'j', "The first cut J of G76 must be above 0"},
         {plan.full_depth <= 0.0, 'k', "The depth K of G76 must be above 0"},
