@@ -314,7 +314,7 @@ inline const BadCase BAD[] = {
     {"G18 F1 G71.1 Q1 I0", "increment I above 0"},
     {"G18 F1 G71.2 Q9", "no subroutine"},
     {"G18 G72 Q1", "needs a feed"},
-    {"G18 F1 G72.1 Q1 A1", "no axis words but"},
+    {"G18 F1 G72.1 Q1 A1", "accepts only the axis words"},
     {"G18 F1 G72.2 Q1.5", "whole number"},
     {"F1 G73 Z0 R1", "needs Q"},
     {"F1 G74 Z0 R1 P1", "Spindle not turning"},
