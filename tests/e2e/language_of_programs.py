@@ -74,7 +74,7 @@ OTHER_ERRORS = (
     ('halcompile -o', '--outfile needs a value', '--outfile braucht einen Wert', '--outfile necesita un valor'),
     ('halcompile a.xy', "halcompile does not support the suffix '.xy'", "halcompile kennt die Endung '.xy' nicht", "halcompile no conoce la extensión '.xy'"),
     ('halcompile syntax.comp', "syntax.comp:3:1: error: ';' is expected here", "syntax.comp:3:1: Fehler: hier wird ';' erwartet", "syntax.comp:3:1: error: aquí se espera ';'"),
-    ('halcompile names.comp', "names.comp:2:2: error: 'int' is a word of C (call the pin int_", "names.comp:2:2: Fehler: 'int' ist ein Schlüsselwort von C (Name für pin: int_",
+    ('halcompile names.comp', "names.comp:2:2: error: 'int' is a C keyword (call the pin int_", "names.comp:2:2: Fehler: 'int' ist ein Schlüsselwort von C (Name für pin: int_",
      "names.comp:2:2: error: 'int' es una palabra reservada de C (llame a pin int_"),
     ('halcompile --require-license free.comp', 'there is no license', 'die Lizenz fehlt', 'falta la licencia'),
     ('halcompile --compile main.c', 'main.c has no rtapi_app_main', 'main.c hat kein rtapi_app_main', 'main.c no tiene rtapi_app_main'),

@@ -103,7 +103,7 @@ describe('tools', () => {
     await page.getByTestId('tool-number').fill('78');
     await page.getByTestId('tool-pocket').fill('77');
     await page.getByTestId('tool-save').click();
-    await until(async () => (await page.getByText(/pocket 77 is taken by tool 77/).count()) > 0, 'the refusal');
+    await until(async () => (await page.getByText(/pocket 77 is occupied by tool 77/).count()) > 0, 'the refusal');
     await page.getByTestId('tool-dialog').getByRole('button', { name: 'Close' }).click();
     await page.getByTestId('strip-dismiss').click();
     await page.getByTestId('edit-77').click();

@@ -389,7 +389,7 @@ TEST_F(UiMachine, APipeIsNotRead) {
     PathReaders readers(*loaded, {});
     const auto pieces = readers.read(path);
     ASSERT_TRUE(pieces.has_value());
-    EXPECT_NE(all_of(**pieces).find("pipe.ngc is no file"), std::string::npos);
+    EXPECT_NE(all_of(**pieces).find("pipe.ngc is not a file"), std::string::npos);
 }
 
 TEST_F(UiMachine, ReadersEndWhenNobodyReads) {

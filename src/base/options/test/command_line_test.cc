@@ -104,7 +104,7 @@ TEST_F(CommandLineTest, ErrorsNameTheOptionAndTheNearestOne) {
     EXPECT_EQ(error({"-x"}), "unknown option -x (see --help)");
     EXPECT_EQ(error({"--plot"}), "option --plot needs a value");
     EXPECT_EQ(error({"--strict=no"}), "option --strict takes no value");
-    EXPECT_EQ(error({"--trigger", "a", "above"}), "option --trigger takes 3 words");
+    EXPECT_EQ(error({"--trigger", "a", "above"}), "option --trigger takes 3 arguments");
     EXPECT_EQ(error({"--trigger", "a", "beside", "3"}), "option --trigger: 'beside' is no kind");
     EXPECT_EQ(error({"--patience", "-1"}), "option --patience: '-1' is not a number from 0.001 to 600");
     EXPECT_EQ(error({"--patience", "nan"}), "option --patience: 'nan' is not a number from 0.001 to 600");

@@ -148,7 +148,7 @@ constexpr Case BAD[] = {
     {"loadrt", "loadrt needs at least 1 argument, 0 given"},
     {"unloadrt nosuch", "component 'nosuch' is not loaded"},
     {"unload nosuch", "component 'nosuch' is not loaded"},
-    {"unloadusr __servo", "component '__servo' is no program"},
+    {"unloadusr __servo", "component '__servo' is not a program"},
     {"loadusr -Wq x", "unknown option '-q' of loadusr"},
     {"loadusr -W", "loadusr needs the name of a program"},
     {"waitusr", "waitusr needs 1 argument, 0 given"},
