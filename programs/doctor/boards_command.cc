@@ -122,8 +122,9 @@ int command_boards(const std::vector<std::string> &arguments) {
     }
     const auto parsed = words.line().parse(arguments);
     if (!parsed.has_value() || (!words.file.empty() && words.addresses.size() != 1)) {
-        fmt::print(stderr, "millwright boards: {}\n",
-                   language::shown(parsed.has_value() ? "--save needs one address" : parsed.error().str()));
+        fmt::print(
+            stderr, "millwright boards: {}\n",
+            language::shown(parsed.has_value() ? "--save needs exactly one address" : parsed.error().str()));
         return 2;
     }
     const bool usual = words.addresses.empty();

@@ -62,8 +62,7 @@ class Section {
         if (first == 'E' || first == 'O' || first == 'N') {
             into = first;
         } else {
-            sink_.error("[" + name_ + "]PARITY = " + entry->value + ": Even, Odd and None are possible",
-                        entry->place);
+            sink_.error("[" + name_ + "]PARITY = " + entry->value + ": use Even, Odd or None", entry->place);
         }
     }
 

@@ -206,7 +206,7 @@ def check_vfdb(programs, folder):
 def check_wrong_words(programs, folder):
     (folder / 'bad.ini').write_text('[VFD-B]\nBAUD = fast\nPARITY = some\n')
     for words, status, text in ((['gs2_vfd', '--parity', 'some'], 2, 'use even, odd or none'), (['gs2_vfd', '--nmae', 'x'], 2, '--name'),
-                                (['vfdb_vfd', '-I', 'bad.ini'], 1, 'bad.ini:2:'), (['vfdb_vfd', '-I', 'bad.ini'], 1, 'Even, Odd and None'),
+                                (['vfdb_vfd', '-I', 'bad.ini'], 1, 'bad.ini:2:'), (['vfdb_vfd', '-I', 'bad.ini'], 1, 'use Even, Odd or None'),
                                 (['vfdb_vfd', '-I', 'bad.ini', '-S', 'OTHER'], 1, 'no section [OTHER]'), (['vfdb_vfd', '-I', 'none.ini'], 1, 'none.ini')):
         done = subprocess.run([programs / words[0], *words[1:]], cwd=folder, capture_output=True, text=True, check=False, timeout=20)
         expect(done.returncode == status and text in done.stderr, words, done.returncode, done.stderr)

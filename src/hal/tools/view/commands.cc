@@ -402,7 +402,7 @@ int latency_test(const Words &words, volatile std::sig_atomic_t &stop) {
             periods[0] = 0;
             continue;
         }
-        const auto period = i < 2 ? parse_period(rest[i]) : fail("latency-test takes two periods");
+        const auto period = i < 2 ? parse_period(rest[i]) : fail("latency-test accepts at most two periods");
         done = period ? Result<>{} : std::unexpected(period.error());
         periods[i < 2 ? i : 0] = period.value_or(0);
     }

@@ -59,11 +59,11 @@ Result<> OnAbort::read(ProgramReader &reader, AbortReason reason) const {
     switch (step) {
     case gcode::Step::FILE_END: return {};
     case gcode::Step::FAILED: return fail(interp.error().str());
-    case gcode::Step::SYNC: return fail("it must not wait");
+    case gcode::Step::SYNC: return fail("the command must not wait");
     case gcode::Step::OK:
     case gcode::Step::PROGRAM_END: break;
     }
-    return fail("it is too long");
+    return fail("the command is too long");
 }
 
 std::string OnAbort::told(const std::string &trouble) const {

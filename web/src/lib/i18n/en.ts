@@ -470,7 +470,7 @@ export const en = {
   'steps.title': 'Commissioning: {machine}',
   'steps.what': 'The steps check inputs, directions, scales, home switches, spindle and probe, and tune the drives. Corrected values are written into the files of the machine. Completed steps are not repeated.',
   'steps.safety': 'Keep the emergency stop within reach. The machine moves only while you hold the button.',
-  'steps.simulated': 'Practice: the board of this machine is simulated. With a real board all steps are due again.',
+  'steps.simulated': 'Practice: the board of this machine is simulated. With a real board, repeat all steps.',
   'steps.real': 'The real machine is switched on and moves. Keep other persons away from the machine.',
   'steps.begin': 'Begin',
   'steps.stop': 'Stop, machine off',
