@@ -65,7 +65,7 @@ TEST(Setup, EachWrongAnswerIsTold) {
         {{{"x.maxx", "1"}}, "x.maxx: this machine type has no such key; did you mean x.max?\n"},
         {{{"x.max", "3,5"}}, "x.max: '3,5' is not a number\n"},
         {{{"x.speed", "0"}}, "x.speed: 0 is out of range: 0.001 to 100000\n"},
-        {{{"x.min", "295"}}, "x.max: the travel is 5, and must be 10 at least\n"},
+        {{{"x.min", "295"}}, "x.max: the travel is 5, but must be at least 10\n"},
         {{{"name", "a#b"}}, "name: a name has 1 to 60 characters without []#;=\\\"\n"},
         {{{"name", "a\nb"}}, "name: a name has 1 to 60 characters without []#;=\\\"\n"},
         {{{"switches", "home"}, {"x.home_speed", "50"}},
