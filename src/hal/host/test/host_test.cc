@@ -149,7 +149,7 @@ TEST_F(HostTest, OneInstanceHasOneRealtimeProcess) {
     EXPECT_TRUE(isHostAlive(instance));
     const auto second = HostClient::start(instance);
     ASSERT_FALSE(second);
-    EXPECT_NE(second.error().message.find("is alive"), std::string::npos);
+    EXPECT_NE(second.error().message.find("is already running"), std::string::npos);
     EXPECT_TRUE(HostClient::connect(instance)) << "but many clients";
 }
 
