@@ -42,7 +42,8 @@ struct Options {
         line.flag("--jerk", "with jerk limits", isJerkLimited);
         line.flag("--fast", "leave the deviation out", isFast);
         line.flag("--third-order", "with the third-order profile instead of the planner", third_order);
-        line.flag("--second-order", "with the profile within velocity and acceleration instead", second_order);
+        line.flag("--second-order", "with the profile within velocity and acceleration instead",
+                  second_order);
         line.flag("--bound", "the bound beside each", isBound);
         line.flag("--rate", "planning alone, on 0.01 mm blocks in nine coordinates", isRate);
         line.text("--trace", "FOLDER", "write the samples of each kind there", trace);
@@ -96,8 +97,7 @@ Run drive(const Program &program, bool isJerkLimited) {
     Run run;
     auto store = std::make_unique<trajectory::PathStore>();
     trajectory::Executor executor(*store, T);
-    auto planner =
-        std::make_unique<trajectory::Planner>(*store, trajectory::PlannerSettings{T});
+    auto planner = std::make_unique<trajectory::Planner>(*store, trajectory::PlannerSettings{T});
     planner->set_limits(limits_of(program, isJerkLimited));
     executor.set_position(program.start);
     std::uint64_t cycle = 0;

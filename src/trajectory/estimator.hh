@@ -77,7 +77,7 @@ class Estimator {
     std::uint64_t cycle_ = 0;
     Sequence move_ = 0;  ///< the one whose time is counted
     std::uint64_t move_cycles_ = 0;
-    double move_top_ = 0;  ///< maximum speed along its parameter until now
+    double move_top_ = 0;     ///< maximum speed along its parameter until now
     double move_middle_ = 0;  ///< speed in the middle of the move
     std::uint64_t standing_cycles_ = 0;
     double skipped_ = 0,

@@ -83,7 +83,7 @@ struct CurvePlan {
     Sequence behind = 0;          ///< continues the present plan behind this cell; 0: begins at rest
     Sequence begin = 0, end = 0;  ///< cells
     std::uint64_t brakes = 0;  ///< Snapshot::brakes that a start at rest was made for; another value voids it
-    std::uint64_t after = 0;  ///< Snapshot::plan that a start at rest was made for; another value voids it
+    std::uint64_t after = 0;   ///< Snapshot::plan that a start at rest was made for; another value voids it
     Sequence span = 0, move = 0;            ///< at the start, from rest
     Sequence last_span = 0, last_move = 0;  ///< that are known
     bool is_stop = false;                   ///< no motion: the present plan takes its next stop

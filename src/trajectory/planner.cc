@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-
 namespace mw::trajectory {
 
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept

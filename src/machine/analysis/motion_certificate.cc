@@ -52,7 +52,6 @@ CertificateSettings certificate_settings(const MachineConfig &machine) {
     const motion::Settings settings = motion::settings_of(machine.parameters);
     CertificateSettings out;
     out.period_s = static_cast<double>(machine.servo_period_ns) * 1e-9;
-    out.areTolerancesAdded = settings.isSet(Parameter::TRAJ_ADDED_TOLERANCES);
     using Type = LimitedCoordinate::Type;
     for (int axis = 0; axis < MAX_AXES; ++axis) {
         if ((machine.axis_mask & 1U << axis) != 0) {
@@ -92,9 +91,6 @@ void MotionCertificate::on_move(const task::SentMove &sent) {
     move.piece = *piece;
     move.mode = terms->mode;
     move.tolerance = terms->tolerance;
-    if (settings_.areTolerancesAdded && move.tolerance > 0) {
-        move.tolerance += terms->naivecam_tolerance > 0 ? terms->naivecam_tolerance : terms->tolerance;
-    }
     move.source = {terms->source.line, terms->source.file_index};
     move.isMeasured = !std::holds_alternative<motion::RigidTap>(sent.body);
     path_.on_move(move);

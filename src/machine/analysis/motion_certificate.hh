@@ -19,8 +19,6 @@ namespace mw::machine {
 struct CertificateSettings {
     std::vector<LimitedCoordinate> coordinates;
     double period_s = 0.001;
-    /// [TRAJ]ADDED_TOLERANCES: joined lines may deviate by G64 Q (or P) in addition to P.
-    bool areTolerancesAdded = false;
 };
 
 /// Axes, joints that a pose moves, and the norm over X, Y and Z, with the limits of the INI file. Jerk limits

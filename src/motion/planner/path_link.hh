@@ -20,10 +20,10 @@ namespace mw::motion {
 /// Written by the controller when a setting changes or a joint is homed or unhomed.
 struct PathLimits {
     trajectory::Limits limits;
-    double corner_scale = 1;          ///< of moves without a tolerance
-    geometry::Pose low, high;         ///< soft limits per axis; +-infinity without a limit
-    std::uint32_t axes = 0;           ///< bit per axis that the kinematics drive
-    std::uint32_t offset_axes = 0;    ///< bit per axis that may have an external offset
+    double corner_scale = 1;        ///< of moves without a tolerance
+    geometry::Pose low, high;       ///< soft limits per axis; +-infinity without a limit
+    std::uint32_t axes = 0;         ///< bit per axis that the kinematics drive
+    std::uint32_t offset_axes = 0;  ///< bit per axis that may have an external offset
     std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;  ///< as in FoldedLimits
     trajectory::JointLimits joints;                           ///< where joints are not axes
     SharedJoints shared;                                      ///< with external offsets

@@ -229,7 +229,7 @@ void AxisMotion::step_with_jerk(double dt) noexcept {
 void AxisMotion::step_without_jerk(double dt) noexcept {
     acceleration = 0;
     const double a = fitted(max_acceleration, target - position, velocity);
-    // Turned so that the target lies beyond the place where braking now would end.
+    // Mirrored so that the target is ahead of the position where braking now would end.
     const double rest = position + velocity * std::abs(velocity) / (2.0 * a);
     const double sign = target >= rest ? 1.0 : -1.0;
     const double d = (target - position) * sign;

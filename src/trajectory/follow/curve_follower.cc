@@ -28,8 +28,8 @@ void CurveFollower::take(const CurvePlan &plan) noexcept {
 
 /// False if the plan that waits was made for another state.
 bool CurveFollower::start(const Snapshot &state) noexcept {
-    const bool is_valid =
-        waiting_.brakes == state.brakes && waiting_.after == state.plan && state.motion == Motion::REST && !state.isHeld && !state.isDropping;
+    const bool is_valid = waiting_.brakes == state.brakes && waiting_.after == state.plan &&
+                          state.motion == Motion::REST && !state.isHeld && !state.isDropping;
     if (is_valid) {
         plan_ = waiting_;
         cell_ = plan_.begin;

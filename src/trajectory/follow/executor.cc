@@ -9,7 +9,7 @@ namespace mw::trajectory {
 
 namespace {
 
-/// A tap also goes beyond the ends of its line.
+/// A tap also moves past the ends of its line.
 Pose line_at(const Primitive &line, double x) noexcept {
     return x == 0 ? line.start : x == line.length ? line.end : line.start + line.lin * x;
 }
@@ -61,7 +61,7 @@ void Executor::come_to_rest() noexcept {
     state_.v = 0;
 }
 
-/// Whatever is left of the path is gone; the planner learns it from `drops`.
+/// Discards the rest of the path. The planner sees it in `drops`.
 void Executor::finish_drop() noexcept {
     state_.isDropping = false;
     ++state_.drops;

@@ -51,11 +51,10 @@ class ExecutorState {
 
 /// All methods: servo thread only; bounded, no allocation.
 ///
-/// Follows the cells of a plan. Every plan has its stops: `hold`, `drop` and a planner that is late or lost take
-/// the next one.
-/// Passes that are locked to a spindle's angle (Motion::LOCKED) it drives by itself, from rest to rest;
-/// `hold` waits for their end, since a thread that was held is scrap; `drop` brakes at once. In a tap it
-/// switches the spindle off and follows it to its stand.
+/// Follows the cells of a plan. Every plan has its stops: `hold`, `drop` and a planner that is late or lost
+/// take the next one. The executor itself drives passes that are locked to a spindle's angle (Motion::LOCKED)
+/// from stop to stop: `hold` takes effect at their end, because a paused thread is scrap; `drop` brakes at
+/// once. In a tap `drop` switches the spindle off, and the tool follows it until it is stopped.
 class Executor : private ExecutorState {
   public:
     explicit Executor(PathStore &store, double period_s) noexcept : ExecutorState(period_s), store_(store) {}

@@ -37,12 +37,12 @@ class Retrace {
     bool hasWay() const noexcept { return count_ > 2 * STANDING; }
     /// Nothing has been recorded for some samples but standing: one may go back from here.
     bool isReady() const noexcept { return standing_ >= STANDING && hasWay(); }
-    /// Gone back and not yet where the path was left.
+    /// True while the machine is behind the point where it left the path.
     bool isAway() const noexcept { return isAway_; }
     bool isMoving() const noexcept { return isAway_ && !way_.isAtRest(); }
-    /// Stands at once: for who goes so slowly that no limit notices.
+    /// Stops at once. Only at a speed at which this exceeds no limit.
     void stand() noexcept { way_.reset(way_.position); }
-    /// Goes on for one period: back, forward, or to a stand; `rate` from 0 to HIGHEST_RATE.
+    /// Advances by one period: back, forward, or to standstill; `rate` from 0 to HIGHEST_RATE.
     geometry::Pose step(double dt, int direction, double rate) noexcept;
 
   private:

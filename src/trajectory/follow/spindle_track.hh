@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speed and acceleration of a spindle from its counted turns alone: what tells its speed apart may have no
-// sign, or be late. Realtime-safe.
+// Speed and acceleration of a spindle from its counted revolutions alone: a separate speed signal may be
+// unsigned or late. Realtime-safe.
 #pragma once
 
 #include <algorithm>

@@ -119,7 +119,7 @@ void TapFollower::begin_run(double dt) noexcept {
     run_.advance(state_, dt);
 }
 
-/// To the start in the least time, without going beyond it: that would turn the drive's play about.
+/// To the start in the least time, without passing it: that would reverse the backlash of the drive.
 void TapFollower::go_home(double dt) noexcept {
     const JerkRange range = jerk_range(dt);
     const double side = place_at_rest(state_) < 0 ? 1.0 : -1.0;

@@ -95,8 +95,7 @@ AccelBound AccelBound::through(const double (&left)[LINES + 1], double v) noexce
     AccelBound out;
     const double b = v * v;
     for (int k = 0; k < LINES; ++k) {
-        const double beta = std::max(0.0, (left[k] - left[k + 1]) /
-                                              ((CHORDS[k + 1] - CHORDS[k]) * b));
+        const double beta = std::max(0.0, (left[k] - left[k + 1]) / ((CHORDS[k + 1] - CHORDS[k]) * b));
         out.beta[static_cast<std::size_t>(k)] = beta;
         out.alpha[static_cast<std::size_t>(k)] = left[k + 1] + beta * CHORDS[k + 1] * b;
     }
@@ -112,8 +111,7 @@ SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept 
             out.v = std::min(out.v, r.velocity / r.q1);
         }
         if (r.q2 > 0) {
-            out.v =
-                std::min(out.v, std::sqrt(r.acceleration * (1.0 - ACCELERATION_MARGIN) / r.q2));
+            out.v = std::min(out.v, std::sqrt(r.acceleration * (1.0 - ACCELERATION_MARGIN) / r.q2));
         }
     }
     // What is left for the path falls with b = v^2, and ever faster, so chords between points of it are on

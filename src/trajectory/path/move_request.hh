@@ -13,7 +13,7 @@ struct MoveRequest {
     /// Of a blend [machine units; degrees over ABC]; 0: as the speed needs, in proportion to the move.
     double tolerance = 0;
     double corner_scale = 1;  ///< part of the reachable speed on curves (G64 R)
-    bool isRapid = false;  ///< as fast as the limits allow, scaled by Scales::rapid
+    bool isRapid = false;     ///< as fast as the limits allow, scaled by Scales::rapid
     bool isOverridable = true;
     bool isAngular = false;  ///< the feed length is over ABC: the operator's velocity ceiling does not apply
     double feed_per_revolution = 0;  ///< > 0: the speed follows a spindle

@@ -27,14 +27,13 @@ void PathLimits::set(const Limits &limits) noexcept {
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         const double v = limits.velocity[static_cast<std::size_t>(i)];
         const bool isCounted = !geometry::isAngular(i) && v < UNLIMITED;
-        nominal_tolerance_ =
-            isCounted ? std::max(nominal_tolerance_, v * NOMINAL_S) : nominal_tolerance_;
+        nominal_tolerance_ = isCounted ? std::max(nominal_tolerance_, v * NOMINAL_S) : nominal_tolerance_;
     }
 }
 
 double PathLimits::free_tolerance(const Primitive &primitive) const noexcept {
-    return std::max(nominal_tolerance_, primitive.isArc ? FREE_OF_RADIUS * primitive.radius
-                                                        : FREE_OF_LENGTH * primitive.length);
+    return std::max(nominal_tolerance_,
+                    primitive.isArc ? FREE_OF_RADIUS * primitive.radius : FREE_OF_LENGTH * primitive.length);
 }
 
 }  // namespace mw::trajectory

@@ -24,9 +24,7 @@ class PlannedPath {
     explicit PlannedPath(PathStore &store) noexcept : store_(store) {}
 
     /// Another path begins behind all that there was.
-    void begin() noexcept {
-        first_move_ = last_move_ + 1;
-    }
+    void begin() noexcept { first_move_ = last_move_ + 1; }
     Sequence first_move() const noexcept { return first_move_; }
     /// Of all paths; one that was dropped is never done.
     Sequence last_move() const noexcept { return last_move_; }

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 
-
 namespace mw::trajectory {
 
 bool Workspace::holds(const Pose &pose) const noexcept {

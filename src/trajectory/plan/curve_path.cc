@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace mw::trajectory::plan {
 
 namespace {

@@ -53,9 +53,9 @@ class CurvePlanner {
     /// Plans without success at rest, one after the other.
     int failures() const noexcept { return failures_; }
 
-    static constexpr double RENEWAL_S = 0.2;   ///< from one plan to the next
-    static constexpr double RESERVE_S = 0.15;  ///< by which a plan may be late
-    static constexpr double WINDOW_S = 0.45;   ///< planned at once, and the time of a stop
+    static constexpr double RENEWAL_S = 0.2;    ///< from one plan to the next
+    static constexpr double RESERVE_S = 0.15;   ///< by which a plan may be late
+    static constexpr double WINDOW_S = 0.45;    ///< planned at once, and the time of a stop
     static constexpr double PLANNING_S = 0.01;  ///< from the making of a plan to its first cell
 
   private:
@@ -78,7 +78,7 @@ class CurvePlanner {
     PlannedPath &moves_;
     double period_s_;
     CurvePath path_;
-    Scales scales_;  ///< that the feeds of the path were made for
+    Scales scales_;                              ///< that the feeds of the path were made for
     profile::Profile third_order_;               ///< with jerk limits
     profile::AccelerationProfile second_order_;  ///< without
     profile::PathTiming *timing_;                ///< that of the present path

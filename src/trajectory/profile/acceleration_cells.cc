@@ -201,8 +201,7 @@ void AccelerationCells::add(const Run &run, double to) {
     PointLimits end;
     find_limits(run, stretch_.place, to, stretch_.rest, end);
     const std::size_t row = first_row_ + rows_.size();
-    AccelerationCell cell =
-        make(from, to, {stretch_.end, end}, {0, to - from}, stretch_.is_straight, rows_);
+    AccelerationCell cell = make(from, to, {stretch_.end, end}, {0, to - from}, stretch_.is_straight, rows_);
     cell.row = row;
     cell.cap_b = stretch_.rest.v2 > 0 ? 1 / stretch_.rest.v2 : 1e300;
     if (!cell.is_straight) {

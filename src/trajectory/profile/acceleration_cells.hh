@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Cells of a curve for motion within velocity and acceleration, and what the limits allow in each.
 //
-// In a cell the path acceleration a is constant, so the squared speed b is linear along it. The limits hold at
-// both ends of a cell, each as a row |a + c b| <= r of a and the squared speed at the start. A cell is so short
-// that between its ends a limit is exceeded by at most the part BETWEEN, whatever motion the rows allow.
+// In a cell the path acceleration a is constant, so the squared speed b is linear along it. The limits hold
+// at both ends of a cell, each as a row |a + c b| <= r of a and the squared speed at the start. A cell is so
+// short that no motion within its rows exceeds a limit between its ends by more than the part BETWEEN.
 #pragma once
 
 #include <array>
@@ -53,16 +53,16 @@ class AccelerationCells {
     void drop_before(double s);
     /// Removes cells that end after `s`.
     void cut_behind(double s);
-    /// Adds the next cell, not beyond `end`. Where the curve is not straight it takes at most about CELL_S from
-    /// the squared speed `b`, or to a stop at `end`.
+    /// Adds the next cell, up to `end` at most. Where the curve is not straight it takes at most about CELL_S
+    /// from the squared speed `b`, or to a stop at `end`.
     void lay(const Run &run, double end, double b);
     /// Divides the only cell, from `s` on, so that a motion can begin and end in it.
     void divide(const Run &run, double s);
     /// Parts of cells that are not among the others: what is left of the first one, the last one up to an end
     /// in it, and the start of a stop.
     enum class Part : std::uint8_t { HEAD, TAIL, STOP };
-    /// The part of a cell from `s` on, up to `end`, until the next call with the same `which`. Up to the end of
-    /// the cell it has the same rows as the whole cell.
+    /// The part of a cell from `s` on, up to `end`, until the next call with the same `which`. Up to the end
+    /// of the cell it has the same rows as the whole cell.
     AccelerationCell part(const Run &run, const AccelerationCell &cell, double s, double end, Part which);
 
     std::size_t size() const noexcept { return cells_.size(); }
@@ -94,7 +94,8 @@ class AccelerationCells {
     void add(const Run &run, double to);
     static AccelerationCell make(double from, double to, const std::array<PointLimits, 2> &limits,
                                  const std::array<double, 2> &at, bool is_straight, std::vector<Row> &rows);
-    bool isShort(const AccelerationCell &cell, const PointLimits &start, const PointLimits &end) const noexcept;
+    bool isShort(const AccelerationCell &cell, const PointLimits &start,
+                 const PointLimits &end) const noexcept;
     double next_point(const Run &run, const Span &span, double end) const noexcept;
     const Row *rows_of(const AccelerationCell &cell) const noexcept {
         return cell.row < IN_PART ? &rows_[cell.row - first_row_] : part_rows_[cell.row - IN_PART].data();

@@ -92,8 +92,8 @@ AccelerationProfile::Ends AccelerationProfile::limited_b(std::size_t &feed,
             const double length2 = f.along == FeedLimit::Along::XYZ   ? e.xyz2
                                    : f.along == FeedLimit::Along::UVW ? e.uvw2
                                                                       : 1.0;
-            out[i] = std::min({out[i], square(f.velocity) / std::max(length2, 1e-30),
-                               square(f.limit_share) * e.machine_b});
+            out[i] = std::min(
+                {out[i], square(f.velocity) / std::max(length2, 1e-30), square(f.limit_share) * e.machine_b});
             if (f.curve_share < 1 && !cell.is_straight) {
                 out[i] = std::min(out[i], square(f.curve_share) * e.curve_b);
             }
@@ -104,8 +104,8 @@ AccelerationProfile::Ends AccelerationProfile::limited_b(std::size_t &feed,
     }
 }
 
-/// Lays cells as far as the motion of the window and a stop behind it may reach, and a stop that begins now:
-/// limits of the speed may have been lowered.
+/// Adds cells for the motion of the window with a stop behind it, and for a stop that begins now, because
+/// speed limits may have been lowered.
 void AccelerationProfile::lay(const State &from, double time_s) {
     cells_.drop_before(from.s + rounding_at(from.s));
     speed_.clear();
@@ -155,7 +155,8 @@ void AccelerationProfile::lay(const State &from, double time_s) {
     }
 }
 
-/// The squared speed at the end of the cell of the soonest braking; 0 with `stop_s` where it ends in the cell.
+/// The squared speed at the end of the cell of the soonest braking; 0 with `stop_s` where it ends in the
+/// cell.
 double AccelerationProfile::brake(const AccelerationCell &cell, double b, double &stop_s) const noexcept {
     const double a = cell.is_straight ? -cell.least : cells_.range(cell, b).low;
     const double next = b + 2 * a * cell.length;
@@ -223,7 +224,8 @@ void AccelerationProfile::drive_straight(const AccelerationCell &cell, std::size
     const double end = std::min(most_[k + 1], b + a2 * length);
     // The speed between: the limit, or what is reached with full acceleration.
     const double limit = std::min(speed_[k][0], speed_[k][1]);
-    const double top = b > limit ? std::max(limit, std::min(end, b)) : std::min(limit, 0.5 * (b + end + a2 * length));
+    const double top =
+        b > limit ? std::max(limit, std::min(end, b)) : std::min(limit, 0.5 * (b + end + a2 * length));
     const double first = std::min(std::abs(top - b) / a2, length);
     const double last = std::min(std::abs(top - end) / a2, length - first);
     add(time_cells_, from, top, first);
@@ -237,7 +239,8 @@ void AccelerationProfile::drive(const AccelerationCell &cell, std::size_t k, Sta
         drive_straight(cell, k, from);
         return;
     }
-    const double end = std::clamp(from.b + 2 * cell.length * cells_.range(cell, from.b).high, 0.0, most_[k + 1]);
+    const double end =
+        std::clamp(from.b + 2 * cell.length * cells_.range(cell, from.b).high, 0.0, most_[k + 1]);
     add(time_cells_, from, end, cell.length);
     from = {cell.end_s(), end};
 }

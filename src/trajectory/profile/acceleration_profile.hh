@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The shortest time along a curve within velocity and acceleration.
 //
-// Backward over the known curve: the largest squared speed at each cell from which a stop at the end of what
-// is known keeps every limit. Forward: the largest acceleration that leads to such a speed. Where more of the
-// curve is known these speeds only grow, so a plan always continues the one before.
+// Backward over the known curve: the maximum squared speed at each cell from which a stop at the end of the
+// known curve keeps every limit. Forward: the maximum acceleration to such a speed. These speeds only grow
+// when more of the curve is known, so each plan can continue the one before.
 #pragma once
 
 #include <algorithm>
@@ -66,9 +66,9 @@ class AccelerationProfile final : public PathTiming {
     AccelerationCells cells_;
     AccelerationCell head_, tail_;  ///< what is left of the first cell; the cell in which the run ends
     std::size_t tail_at_ = 0;       ///< 0: none
-    std::vector<Ends> speed_;     ///< squared speed limits
-    std::vector<double> most_;    ///< squared speeds from which a stop is possible
-    std::vector<double> braked_;        ///< squared speed of the soonest braking at the ends
+    std::vector<Ends> speed_;       ///< squared speed limits
+    std::vector<double> most_;      ///< squared speeds from which a stop is possible
+    std::vector<double> braked_;    ///< squared speed of the soonest braking at the ends
     double start_s_ = 0, drivable_end_s_ = 0;
     std::vector<TimeCell> time_cells_;
     double end_s_ = 0;

@@ -15,7 +15,7 @@ struct Bounds {
 };
 struct CurveLimits {
     std::array<Bounds, geometry::AXIS_COUNT> axes;
-    Bounds xyz;  ///< of the norm over X Y Z
+    Bounds xyz;            ///< of the norm over X Y Z
     bool has_jerk = true;  ///< the machine has jerk limits
 };
 

@@ -42,7 +42,7 @@ class PathTiming {
     /// braking needs; acceleration and jerk never. An end that is so near that the plan brakes for it stays:
     /// the run resumes with begin(). False if it is rejected as in plan(): the speed stays as it was.
     virtual bool replan(const Run &run, std::size_t fixed) = 0;
-    /// Begins stops of one plan within `run`. They are made from the last one to the first.
+    /// Begins the stops of one plan within `run`. The last stop is requested first.
     virtual void begin_stops(const Run &run) = 0;
     /// The soonest stop that keeps every limit of `run`, not before the start of cell `fixed`. The plan stays
     /// as it is.

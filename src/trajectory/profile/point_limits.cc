@@ -28,7 +28,8 @@ CurvePlace place_at(const Run &run, double s) noexcept {
     return {span_at(*run.spans, s), run.joint_curve == nullptr ? 0 : run.joint_curve->part_at(s)};
 }
 
-void find_limits(const Run &run, const CurvePlace &place, double s, const CapRest &rest, PointLimits &out) noexcept {
+void find_limits(const Run &run, const CurvePlace &place, double s, const CapRest &rest,
+                 PointLimits &out) noexcept {
     const Span &span = (*run.spans)[place.span];
     const CurvePoint p = curve::point_at(span, s);
     out.count = 0;
@@ -72,15 +73,16 @@ void find_limits(const Run &run, const CurvePlace &place, double s, const CapRes
     out.curve_b = 1 / bend;
 }
 
-double change_between(const PointLimits &before, const PointLimits &behind, double apart, PathMotion most) noexcept {
+double change_between(const PointLimits &before, const PointLimits &behind, double apart,
+                      PathMotion most) noexcept {
     double change = 0;
     for (std::size_t i = 0; i < behind.count; ++i) {
         const double q1 = std::abs(behind.q1[i]), q2 = std::abs(behind.q2[i]);
         const double q3 = std::max(std::abs(behind.q3[i]), std::abs(before.q3[i]));
         const double q4 = std::abs(behind.q3[i] - before.q3[i]) / apart;
-        change = std::max({change, 5 * q3 * most.a + q4 * most.b,
-                           square(behind.per_velocity[i]) *
-                               (2 * (q2 * q2 + q1 * q3) * most.b + 8 * q1 * q2 * most.a)});
+        change = std::max(
+            {change, 5 * q3 * most.a + q4 * most.b,
+             square(behind.per_velocity[i]) * (2 * (q2 * q2 + q1 * q3) * most.b + 8 * q1 * q2 * most.a)});
     }
     return change;
 }

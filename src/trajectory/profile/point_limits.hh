@@ -41,16 +41,18 @@ struct CurvePlace {
 /// The place of a point on the curve of `run`.
 CurvePlace place_at(const Run &run, double s) noexcept;
 /// `rest`: what seams leave of the limits.
-void find_limits(const Run &run, const CurvePlace &place, double s, const CapRest &rest, PointLimits &out) noexcept;
+void find_limits(const Run &run, const CurvePlace &place, double s, const CapRest &rest,
+                 PointLimits &out) noexcept;
 
 /// A motion along the path: squared speed, acceleration.
 struct PathMotion {
     double b = 0, a = 0;
 };
 /// Bound of the second derivative by s of what limits apply to, over the limits, between two points at a
-/// distance `apart`, with constant acceleration: of an acceleration q' a + q'' b it is 5 q''' a + q'''' b, of a
-/// squared velocity q'^2 b it is 2 (q''^2 + q' q''') b + 8 q' q'' a. Between the points each differs from the
-/// line through its values there by at most apart^2/8 of it.
-double change_between(const PointLimits &before, const PointLimits &behind, double apart, PathMotion most) noexcept;
+/// distance `apart`, with constant acceleration: of an acceleration q' a + q'' b it is 5 q''' a + q'''' b, of
+/// a squared velocity q'^2 b it is 2 (q''^2 + q' q''') b + 8 q' q'' a. Between the points each differs from
+/// the line through its values there by at most apart^2/8 of it.
+double change_between(const PointLimits &before, const PointLimits &behind, double apart,
+                      PathMotion most) noexcept;
 
 }  // namespace mw::trajectory::profile

@@ -25,8 +25,8 @@ struct SpeedCap {
     double reach = 0;      ///< length on both sides within which the smooth part takes the rest of the limits
     double period_s = 1e-3;
     bool has_jerk = true;  ///< of the limits
-    PerBounds turn{};  ///< jerk over v: |dq'|/T^2
-    PerBounds bend{};  ///< jerk over v^2: 3/4 |dq''|/T
+    PerBounds turn{};      ///< jerk over v: |dq'|/T^2
+    PerBounds bend{};      ///< jerk over v^2: 3/4 |dq''|/T
 };
 
 /// Part of the jerk limit that a jump of the tangent may take.

@@ -182,7 +182,7 @@ TEST(CurvePlanner, ReachesFullSpeedWhereBrakingTakesSeconds) {
     EXPECT_LE(static_cast<double>(rig.samples.size()) * Rig::T, 1.01 * (WAY / V + V / A + A / J));
 }
 
-/// Short chords on few long spans: moves that are driven make room for others.
+/// Short chords on few long spans: moves are removed when they are complete.
 TEST(CurvePlanner, DrivesMoreMovesThanThereIsRoomFor) {
     constexpr int MOVES = 2 * static_cast<int>(PRIMITIVE_CAPACITY);
     Program program;
@@ -201,9 +201,8 @@ TEST(CurvePlanner, DrivesMoreMovesThanThereIsRoomFor) {
         for (int waited = 0; waited < 5000 && !rig.planner.hasRoom(); ++waited) {
             rig.step();
         }
-        ASSERT_TRUE(rig.planner.hasRoom())
-            << "move " << n << ", driven " << rig.executor.snapshot().done_move << " to "
-            << rig.executor.snapshot().x;
+        ASSERT_TRUE(rig.planner.hasRoom()) << "move " << n << ", driven " << rig.executor.snapshot().done_move
+                                           << " to " << rig.executor.snapshot().x;
         Pose to;
         to[0] = 0.01 * n;
         rig.planner.add(make_line(at, to), request);

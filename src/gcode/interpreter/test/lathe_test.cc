@@ -144,7 +144,8 @@ TEST(LatheCycle, RefusesWhatCannotBeCut) {
     EXPECT_NE(error_of("O100 sub\nG0 X5\nG1 Z-10\nG1 Z-9 X6\nG1 Z-12\nO100 endsub\n", "G71 Q100")
                   .find("not monotonic"),
               std::string::npos);
-    EXPECT_NE(error_of("O100 sub\nG0 X5\nG1 Z-10 A50\nG1 X8\nO100 endsub\n", "G70 Q100").find("too small for its fillet"),
+    EXPECT_NE(error_of("O100 sub\nG0 X5\nG1 Z-10 A50\nG1 X8\nO100 endsub\n", "G70 Q100")
+                  .find("too small for its fillet"),
               std::string::npos);
 }
 

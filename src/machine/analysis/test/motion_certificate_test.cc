@@ -20,7 +20,6 @@ class MotionCertificateTest : public ::testing::Test {
         line.end[0] = end;
         line.terms.mode = mode_;
         line.terms.tolerance = 0.01;
-        line.terms.naivecam_tolerance = naive_;
         line.terms.source.line = static_cast<int>(++id_);
         const motion::PathBody body = line;
         geometry::Pose from;
@@ -56,7 +55,6 @@ class MotionCertificateTest : public ::testing::Test {
     static constexpr double UNLIMITED = std::numeric_limits<double>::infinity();
     CertificateSettings settings_;
     geometry::PathMode mode_ = geometry::PathMode::BLEND;
-    double naive_ = 0;
     motion::CommandId id_ = 0;
     std::uint64_t cycle_ = 0;
     std::optional<MotionCertificate> made_;
@@ -172,20 +170,6 @@ TEST_F(MotionCertificateTest, OnlyACompleteProgramHasToReachItsEnd) {
     EXPECT_LT(result(ProgramEnd::STOPPED).deviations.largest.distance(), 1e-12);
     made_ = stopped;
     EXPECT_NEAR(result(ProgramEnd::COMPLETE).deviations.largest.distance(), 0.5, 1e-9);
-}
-
-TEST_F(MotionCertificateTest, AddedTolerancesAreAdded) {
-    settings_.areTolerancesAdded = true;
-    naive_ = 0.03;
-    send(0, 1);
-    certificate().on_sample(sample(0));
-    motion::TraceSample aside = sample(0.5);
-    aside.programmed_pos_cmd[1] = 0.02;
-    certificate().on_sample(aside);
-    certificate().on_sample(sample(1));
-    const Certificate found = result();
-    EXPECT_NEAR(found.deviations.tightest.tolerance, 0.04, 1e-12);
-    EXPECT_NEAR(found.deviations.tightest.ratio(), 0.5, 1e-9);
 }
 
 }  // namespace
