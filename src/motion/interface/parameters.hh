@@ -40,7 +40,7 @@ inline constexpr double NO_JERK_LIMIT = 1e9;
     X(TRAJ_CORNER_SCALE, MACHINE, "TRAJ", "SCURVE_PEAK_SCALE", NONE, 0.1, 1, 1,                              \
       "with jerk limits: part of the reachable speed in corners")                                            \
     X(TRAJ_ADDED_TOLERANCES, MACHINE, "TRAJ", "ADDED_TOLERANCES", FLAG, 0, 1, 0,                             \
-      "accepted: the path stays within G64 P")                                                                                                                        \
+      "accepted: the path stays within G64 P")                                                               \
     X(TRAJ_NO_PROBE_JOG_ERROR, MACHINE, "TRAJ", "NO_PROBE_JOG_ERROR", FLAG, 0, 1, 0,                         \
       "a probe that trips in a jog does not stop it")                                                        \
     X(TRAJ_NO_PROBE_HOME_ERROR, MACHINE, "TRAJ", "NO_PROBE_HOME_ERROR", FLAG, 0, 1, 0,                       \

@@ -60,8 +60,7 @@ struct Samples {
     void expect_within_limits(const ExactRun &path) const {
         testing::LimitChecker checker(std::vector<testing::AxisLimit>(3, {V, A, 1e300}), PERIOD);
         for (const double s : places) {
-            const Pose p =
-                curve::position_at(path.builder.spans()[span_at(path.builder.spans(), s)], s);
+            const Pose p = curve::position_at(path.builder.spans()[span_at(path.builder.spans(), s)], s);
             checker.sample(p.c.data());
         }
         EXPECT_TRUE(checker.isWithin()) << checker.report();
