@@ -113,7 +113,7 @@ def by_library(bench, elsewhere, command_client, encoding, key):
     path = bench.config(f'{encoding}.nml', HERE, encoding, key)
     channels = bench.begin('are up', 'nml', path)
     said = pathlib.Path(bench.folder / f'{len(bench.started) - 1}.out').read_text()
-    expect('anyone who reaches ' + HERE in said, 'access from other computers is reported', said)
+    expect('any computer that reaches ' + HERE in said, 'access from other computers is reported', said)
     done = run(*elsewhere.there(command_client, '--nml', path, '--count', '20'))
     expect(done.returncode == 0 and 'homed true, at X7.5' in done.stdout, f'{encoding}: it operates the machine', done.stdout, done.stderr)
     print(f'{encoding} over the network,', ', '.join(done.stdout.splitlines()[1:]))
