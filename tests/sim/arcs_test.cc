@@ -119,7 +119,7 @@ class RoundedArcsTest : public VirtualMachineTest {
                 continue;
             }
             ++on_arcs;
-            ASSERT_EQ(s.carte_pos_cmd[other], 0.0) << "line " << line;
+            ASSERT_NEAR(s.carte_pos_cmd[other], 0.0, 1e-9) << "line " << line;
             const Expected &e = expected_[line];
             const double r = std::hypot(s.carte_pos_cmd[plane.first] - e.centre[0],
                                         s.carte_pos_cmd[plane.second] - e.centre[1]);

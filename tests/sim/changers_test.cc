@@ -118,7 +118,7 @@ TEST_F(ChangerTest, WithBothTheQuillIsUpBeforeItGoesToG30) {
     for (std::size_t i = first; i < samples_.size(); ++i) {
         const geometry::Pose &at = samples_[i].carte_pos_cmd;
         isAtTop = isAtTop || std::fabs(at[2]) < ROUNDED_MM;
-        const bool isOnItsWay = std::fabs(at[0] - 5) > 1e-6;
+        const bool isOnItsWay = std::fabs(at[0] - 5) > ROUNDED_MM;
         ASSERT_TRUE(isAtTop || !isOnItsWay) << "X moves with the tool down, at Z" << at[2];
     }
     EXPECT_TRUE(isAtTop);

@@ -10,6 +10,11 @@ namespace {
 /// Deviation of the curve without a programmed tolerance: part of a line's length, of an arc's radius, and at
 /// least the distance in this time at maximum speed.
 constexpr double FREE_OF_LENGTH = 0.1, FREE_OF_RADIUS = 1e-3, NOMINAL_S = 1e-4;
+/// Without jerk limits: at most what a corner of 90 degrees needs at the programmed speed with 0.7 of the
+/// acceleration, (v^2 sqrt(2)/(1.4 a)) sqrt(2)/4.
+constexpr double FREE_OF_CORNER = 0.5 / 1.4;
+/// And at least [machine units]: a shorter corner takes less than a servo period.
+constexpr double LEAST_FREE = 1e-5;
 
 }  // namespace
 
@@ -31,9 +36,16 @@ void PathLimits::set(const Limits &limits) noexcept {
     }
 }
 
-double PathLimits::free_tolerance(const Primitive &primitive) const noexcept {
-    return std::max(nominal_tolerance_,
-                    primitive.isArc ? FREE_OF_RADIUS * primitive.radius : FREE_OF_LENGTH * primitive.length);
+double PathLimits::free_tolerance(const Primitive &primitive, double speed) const noexcept {
+    const double shape =
+        primitive.isArc ? FREE_OF_RADIUS * primitive.radius : FREE_OF_LENGTH * primitive.length;
+    if (wanted_.isJerkLimited) {
+        return std::max(nominal_tolerance_, shape);
+    }
+    const SpeedLimit limit =
+        limit_of(primitive, 0, primitive.length, wanted_, speed > 0 ? speed : UNLIMITED);
+    const double corner = FREE_OF_CORNER * limit.v * limit.v / limit.a.at(0);
+    return std::clamp(corner, LEAST_FREE, std::max({LEAST_FREE, nominal_tolerance_, shape}));
 }
 
 }  // namespace mw::trajectory

@@ -79,7 +79,7 @@ double MoveFeeds::chosen_feed(const Conditions &conditions, Sequence n, double v
                       velocity < UNLIMITED ? velocity * ratio : UNLIMITED, n == moves_.last_move()},
                      conditions.limits.wanted());
     m.chosen_speed = chosen.most;
-    overreach_ = chosen.overreach.kind != Overreach::Kind::NONE ? chosen.overreach : overreach_;
+    overreach_ = overreach_.kind == Overreach::Kind::NONE ? chosen.overreach : overreach_;
     return chosen.most / ratio;
 }
 
