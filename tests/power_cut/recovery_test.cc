@@ -189,7 +189,7 @@ TEST_F(NewLengthTest, ItGoesOnAtTheBlockUnderWayWithTheNewLength) {
         isAtBegin = isAtBegin || (std::fabs(at[0] - 20) < 1e-6 && std::fabs(at[1]) < 1e-6 &&
                                   std::fabs(z() - (longer - 1)) < 1e-6);
         isCutting = isCutting || status().task.motion_line >= 10;
-        ASSERT_GE(z(), longer - 1 - 1e-6) << "it never goes as deep as with the old length";
+        ASSERT_GE(z(), longer - 1 - ROUNDED_MM) << "it never goes as deep as with the old length";
         if (status().task.motion_line >= 10) {
             ASSERT_NEAR(z(), longer - 1, ROUNDED_MM);
         }

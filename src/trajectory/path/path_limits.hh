@@ -12,8 +12,8 @@ class PathLimits {
 
     /// Holds for moves added from now on.
     void set(const Limits &limits) noexcept;
-    /// Maximum deviation of the curve on a move without a programmed tolerance, at `speed` along its parameter
-    /// (0: as fast as the limits allow).
+    /// Maximum deviation of the curve on a move without a programmed tolerance, at `speed` along its
+    /// parameter (0: as fast as the limits allow).
     double free_tolerance(const Primitive &primitive, double speed) const noexcept;
 
     const Limits &wanted() const noexcept { return wanted_; }

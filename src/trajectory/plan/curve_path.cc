@@ -97,9 +97,10 @@ double CurvePath::tolerance_of(const Conditions &conditions, const Primitive &pr
         return 0;
     }
     const double wanted =
-        request.tolerance > 0 ? request.tolerance : conditions.limits.free_tolerance(
-                                             primitive, request.tag.requested_velocity * primitive.length /
-                                                            feed_length(primitive).length);
+        request.tolerance > 0
+            ? request.tolerance
+            : conditions.limits.free_tolerance(primitive, request.tag.requested_velocity * primitive.length /
+                                                              feed_length(primitive).length);
     const double kept = conditions.workspace.tolerance_within(primitive, wanted);
     return kept < LEAST_TOLERANCE * wanted ? 0.0 : kept;
 }

@@ -65,7 +65,12 @@ void AccelerationProfile::take_joints(const Run &run) {
         return;
     }
     if (joint_curve_.joints() == 0) {
-        joint_curve_.begin(run.map, run.joints);
+        // The error of the interpolation is measured by a jerk.
+        JointLimits limits = run.joints;
+        for (std::size_t j = 0; j < static_cast<std::size_t>(limits.count); ++j) {
+            limits.jerk[j] = limits.acceleration[j] / LEAST_RAMP_S;
+        }
+        joint_curve_.begin(run.map, limits);
     }
     joint_curve_.cover(*run.spans);
     joint_curve_.drop_before(time_cells_.empty() ? start_s_ : time_cells_[0].c[0]);
