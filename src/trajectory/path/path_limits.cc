@@ -44,7 +44,8 @@ double PathLimits::free_tolerance(const Primitive &primitive, double speed) cons
     }
     const SpeedLimit limit = limit_of(primitive, 0, primitive.length, wanted_, speed > 0 ? speed : UNLIMITED);
     const double corner = FREE_OF_CORNER * limit.v * limit.v / limit.a.at(0);
-    return std::clamp(corner, LEAST_FREE, std::max({LEAST_FREE, nominal_tolerance_, shape}));
+    const double least = std::max(LEAST_FREE, nominal_tolerance_);
+    return std::clamp(corner, least, std::max(least, shape));
 }
 
 }  // namespace mw::trajectory
