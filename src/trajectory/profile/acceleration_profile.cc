@@ -280,8 +280,14 @@ bool AccelerationProfile::plan(const Run &run, std::size_t fixed) {
     if (!(drivable_end_s_ > from.s)) {
         return true;
     }
+    std::size_t laid = 0;
     for (double time_s = window_s_;; time_s *= FARTHER) {
         lay(from, time_s);
+        if (speed_.empty()) {
+            return true;  // nothing ahead is drivable
+        }
+        const bool is_farthest = speed_.size() == laid;
+        laid = speed_.size();
         braked_.clear();
         pass_backward();
         if (from.b > most_[0] * (1 + ROUNDING)) {
@@ -293,7 +299,7 @@ bool AccelerationProfile::plan(const Run &run, std::size_t fixed) {
         }
         time_cells_.resize(fixed);
         const bool is_all = cell_at(speed_.size() - 1).end_s() >= drivable_end_s_;
-        if (pass_forward(from) >= window_s_ || is_all) {
+        if (pass_forward(from) >= window_s_ || is_all || is_farthest) {
             return true;
         }
     }
