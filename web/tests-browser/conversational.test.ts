@@ -106,7 +106,7 @@ it('reports that the G-code was changed by hand', async () => {
   await field('open').click();
   await field('discard').click();
   await field('open-Flange.ngc').click();
-  await untilText(page, 'conv-edited-dialog', /changed by hand/);
+  await untilText(page, 'conv-edited-dialog', /edited by hand/);
   await field('edit-text').click();
   await untilText(page, 'text-room', /S1400/);
 });

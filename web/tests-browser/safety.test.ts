@@ -47,7 +47,7 @@ describe('a saved program', () => {
     await tab('text');
     await untilText(page, 'text-room', /first/);
     await page.getByTestId('text-former').click();
-    await untilText(page, 'notice', /no former version of twice\.ngc/);
+    await untilText(page, 'notice', /no previous version of twice\.ngc/);
     await page.locator('.cm-content').click();
     await page.keyboard.press('Control+A');
     await page.keyboard.type('G21 (second)\nM2\n');
