@@ -31,8 +31,9 @@ CycleThread::~CycleThread() {
 void CycleThread::give_back() {
     if (taken_) {
         taken_ = false;
-        raise_priority(thread_id_);  // the call is returning to task
-        call_.give_back();
+        if (call_.give_back()) {
+            set_lowered(false);
+        }
     }
 }
 
@@ -42,6 +43,7 @@ void CycleThread::run(std::int64_t now_ns) {
     const auto hasEnded = [this] { return !running_; };
     if (hasEnded()) {
         late_ = false;
+        set_lowered(false);
         now_ns_ = now_ns;
         running_ = true;
         begun_.notify_one();
@@ -51,11 +53,19 @@ void CycleThread::run(std::int64_t now_ns) {
         if (call_.take()) {
             taken_ = late_ = true;
             lock.unlock();
-            reset_priority(thread_id_);
+            set_lowered(true);
             works_.apart(now_ns);
             return;
         }
+        set_lowered(false);  // the call has ended
         patience = LOOK_AGAIN;
+    }
+}
+
+void CycleThread::set_lowered(bool lowered) {
+    if (lowered != lowered_) {
+        lowered_ = lowered;
+        lowered ? reset_priority(thread_id_) : raise_priority(thread_id_);
     }
 }
 

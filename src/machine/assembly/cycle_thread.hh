@@ -47,11 +47,13 @@ class CycleThread {
 
   private:
     void work();
+    void set_lowered(bool lowered);
 
     task::LongCall &call_;
     Works works_;
     bool taken_ = false;
     bool late_ = false;
+    bool lowered_ = false;  ///< the cycle thread has the priority of other programs
     std::atomic<int> thread_id_ = 0;
 
     std::mutex mutex_;

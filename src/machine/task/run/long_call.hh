@@ -17,10 +17,16 @@ class LongCall {
     void begin() noexcept { state_.store(State::CALLING, std::memory_order_release); }
     /// Waits while the other thread uses task.
     void end() noexcept {
-        State expected = State::CALLING;
-        while (!state_.compare_exchange_strong(expected, State::NONE, std::memory_order_acq_rel)) {
-            state_.wait(State::TAKEN, std::memory_order_acquire);
-            expected = State::CALLING;
+        while (true) {
+            State now = State::CALLING;
+            if (state_.compare_exchange_strong(now, State::NONE, std::memory_order_acq_rel)) {
+                return;
+            }
+            now = State::TAKEN;
+            if (state_.compare_exchange_strong(now, State::WAITING, std::memory_order_acq_rel)) {
+                state_.wait(State::WAITING, std::memory_order_acquire);
+                return;
+            }
         }
     }
 
@@ -29,9 +35,15 @@ class LongCall {
         State expected = State::CALLING;
         return state_.compare_exchange_strong(expected, State::TAKEN, std::memory_order_acq_rel);
     }
-    void give_back() noexcept {
-        state_.store(State::CALLING, std::memory_order_release);
+    /// True if the call has ended meanwhile, so that task's own thread continues now.
+    bool give_back() noexcept {
+        State expected = State::TAKEN;
+        if (state_.compare_exchange_strong(expected, State::CALLING, std::memory_order_acq_rel)) {
+            return false;
+        }
+        state_.store(State::NONE, std::memory_order_release);
         state_.notify_one();
+        return true;
     }
 
     class During {
@@ -46,7 +58,8 @@ class LongCall {
     };
 
   private:
-    enum class State : std::uint8_t { NONE, CALLING, TAKEN };
+    /// WAITING: the call has ended, and the other thread still uses task.
+    enum class State : std::uint8_t { NONE, CALLING, TAKEN, WAITING };
     std::atomic<State> state_{State::NONE};
 };
 
