@@ -45,7 +45,8 @@ Estimator::Estimator(const Limits &limits, double period_s, Listener listener)
       period_power_{period_s, period_s * period_s, period_s * period_s * period_s},
       listener_(std::move(listener)), store_(std::make_unique_for_overwrite<PathStore>()),
       executor_(std::make_unique<Executor>(*store_, period_s)),
-      planner_(std::make_unique<Planner>(*store_, PlannerSettings{period_s})) {
+      planner_(
+          std::make_unique<Planner>(*store_, PlannerSettings{.period_s = period_s, .is_estimate = true})) {
     planner_->set_limits(limits);
 }
 

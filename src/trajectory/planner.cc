@@ -7,7 +7,7 @@ namespace mw::trajectory {
 
 Planner::Planner(PathStore &store, const PlannerSettings &settings) noexcept
     : settings_(settings), conditions_(settings.period_s), path_(store),
-      curve_(store, path_, settings.period_s) {
+      curve_(store, path_, settings.period_s, settings.is_estimate) {
     conditions_.chooser = settings.chooser;
 }
 

@@ -16,6 +16,7 @@ struct PlannerSettings {
     double period_s = 1e-3;           ///< of the servo
     std::uint64_t latency = 3;        ///< cycles from a plan's making to its start
     SpeedChooser *chooser = nullptr;  ///< chooses speeds instead of the fastest; stays valid
+    bool is_estimate = false;         ///< nothing stops the motion, so a plan has only its last stop
 };
 
 /// All methods: planner thread only. Allocates. Same calls with the same values: same bits.

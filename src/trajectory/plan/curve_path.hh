@@ -11,7 +11,7 @@
 #include "trajectory/path/planned_path.hh"
 #include "trajectory/plan/move_feeds.hh"
 #include "trajectory/plan/pass_builder.hh"
-#include "trajectory/profile/cells.hh"
+#include "trajectory/profile/run.hh"
 
 namespace mw::trajectory::plan {
 

@@ -22,9 +22,9 @@ static_assert(MOST_MOTION_CELLS + MOST_LAST_CELLS + DIRECT_CELLS < MOST_CELLS);
 
 }  // namespace
 
-CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s)
-    : store_(store), moves_(moves), period_s_(period_s), path_(store, moves),
-      third_order_({.window_s = WINDOW_S, .period_s = period_s}), second_order_(WINDOW_S, period_s),
+CurvePlanner::CurvePlanner(PathStore &store, PlannedPath &moves, double period_s, bool is_estimate)
+    : store_(store), moves_(moves), period_s_(period_s), is_estimate_(is_estimate), path_(store, moves),
+      third_order_({.window_s = WINDOW_S, .period_s = period_s}), second_order_(COMMITTED_S, period_s),
       timing_(&third_order_) {}
 
 void CurvePlanner::begin(const Pose &start, const Snapshot &now, const Conditions &conditions) {
@@ -118,7 +118,7 @@ profile::Run CurvePlanner::run_from(double s, double least_end, const Conditions
     return run;
 }
 
-/// Drops the cells that the executor has left.
+/// Finds out where the executor is: at rest, in a cell of the motion, or in a stop.
 void CurvePlanner::follow(const Snapshot &now) {
     if (now.motion != Motion::CURVE) {
         const bool is_taken = now.plan == plan_ || now.cycle > planned_cycle_ + TAKEN_CYCLES;
@@ -129,10 +129,18 @@ void CurvePlanner::follow(const Snapshot &now) {
     const auto at = std::lower_bound(numbers_.begin(), numbers_.end(), now.cell);
     if (at == numbers_.end() || *at != now.cell) {
         is_abandoned_ = true;
+    } else if (!path_.hasRoom()) {
+        drop_driven(now);
+    }
+}
+
+/// Drops the cells that the executor has left, and the path before.
+void CurvePlanner::drop_driven(const Snapshot &now) {
+    if (now.motion != Motion::CURVE || is_abandoned_) {
         return;
     }
-    const auto driven = static_cast<std::size_t>(at - numbers_.begin());
-    timing_->drop(driven);
+    const auto at = std::lower_bound(numbers_.begin(), numbers_.end(), now.cell);
+    timing_->drop(static_cast<std::size_t>(at - numbers_.begin()));
     numbers_.erase(numbers_.begin(), at);
     path_.drop_before(std::min(now.x, timing_->cell(0).c[0]));
 }
@@ -253,6 +261,7 @@ void CurvePlanner::continue_plan(const Snapshot &now, const Conditions &conditio
         return;
     }
     tried_cycle_ = now.cycle;
+    drop_driven(now);
     const std::size_t fixed = first_free_cell(now);
     if (fixed >= numbers_.size()) {
         return;  // too late: the plan ends in its last stop
@@ -305,10 +314,9 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     for (std::size_t k = fixed; k < cells; ++k) {
         planned += timing_->cell(k).duration;
     }
-    is_window_full_ = timing_->isComplete() || planned > 0.5 * WINDOW_S;
-    // The rest of the window is for the stop.
+    is_window_full_ = timing_->isComplete() || planned > 0.5 * COMMITTED_S;
     const double committed =
-        timing_->isComplete() ? RENEWAL_S + RESERVE_S : std::min(RENEWAL_S + RESERVE_S, 0.5 * planned);
+        timing_->isComplete() ? COMMITTED_S : std::min(COMMITTED_S, timing_->committed_part() * planned);
     std::size_t last = fixed;
     double ahead = 0;
     while (last < cells && ahead < committed && last - fixed < MOST_MOTION_CELLS) {
@@ -379,7 +387,8 @@ void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, const profile::
         ahead += timing_->cell(k).duration;
     }
     double since = 0, apart = apart_of(end);
-    for (std::size_t k = end.kept; k-- > fixed + 1 && stops_.size() < CurvePlan::MOST_STOPS;) {
+    for (std::size_t k = end.kept;
+         !is_estimate_ && k-- > fixed + 1 && stops_.size() < CurvePlan::MOST_STOPS;) {
         since += timing_->cell(k).duration;
         ahead -= timing_->cell(k).duration;
         if (since < apart && !(fixed == 0 && k == 1)) {

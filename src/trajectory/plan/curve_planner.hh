@@ -17,7 +17,8 @@ namespace mw::trajectory::plan {
 /// not taken: the executor takes the last stop of the plan before, and the next plan begins at rest.
 class CurvePlanner {
   public:
-    CurvePlanner(PathStore &store, PlannedPath &moves, double period_s);
+    /// `is_estimate`: plans have only their last stop.
+    CurvePlanner(PathStore &store, PlannedPath &moves, double period_s, bool is_estimate = false);
 
     /// A path begins at `start`, where the executor is at rest.
     void begin(const Pose &start, const Snapshot &now, const Conditions &conditions);
@@ -53,14 +54,16 @@ class CurvePlanner {
     /// Plans without success at rest, one after the other.
     int failures() const noexcept { return failures_; }
 
-    static constexpr double RENEWAL_S = 0.2;    ///< from one plan to the next
-    static constexpr double RESERVE_S = 0.15;   ///< by which a plan may be late
-    static constexpr double WINDOW_S = 0.45;    ///< planned at once, and the time of a stop
+    static constexpr double RENEWAL_S = 0.2;   ///< from one plan to the next
+    static constexpr double RESERVE_S = 0.15;  ///< by which a plan may be late
+    static constexpr double COMMITTED_S = RENEWAL_S + RESERVE_S;
+    static constexpr double WINDOW_S = 0.45;    ///< planned at once with jerk limits, and the time of a stop
     static constexpr double PLANNING_S = 0.01;  ///< from the making of a plan to its first cell
 
   private:
     double place_of(const Snapshot &now) const noexcept;
     void follow(const Snapshot &now);
+    void drop_driven(const Snapshot &now);
     void start(const Snapshot &now, const Conditions &conditions);
     void start_pass(const Snapshot &now, double s, Sequence move, const Conditions &conditions);
     void continue_plan(const Snapshot &now, const Conditions &conditions);
@@ -77,6 +80,7 @@ class CurvePlanner {
     PathStore &store_;
     PlannedPath &moves_;
     double period_s_;
+    bool is_estimate_;
     CurvePath path_;
     Scales scales_;                              ///< that the feeds of the path were made for
     profile::Profile third_order_;               ///< with jerk limits

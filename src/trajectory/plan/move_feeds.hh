@@ -7,7 +7,7 @@
 #include "trajectory/path/conditions.hh"
 #include "trajectory/path/planned_path.hh"
 #include "trajectory/path/speed_choice.hh"
-#include "trajectory/profile/cells.hh"
+#include "trajectory/profile/run.hh"
 
 namespace mw::trajectory::plan {
 

@@ -25,10 +25,6 @@ double square(double x) noexcept {
     return x * x;
 }
 
-double rounding_at(double s) noexcept {
-    return 1e-12 * std::max(1.0, std::abs(s));
-}
-
 /// For a part of the limit.
 Norm within(const Norm &n, double share) noexcept {
     const double scale = 1 / square(share);
@@ -68,7 +64,7 @@ void take_norm(const Norm &n, double b, AccelerationRange &range) noexcept {
 
 void AccelerationCells::begin(double s) noexcept {
     begin_s_ = s;
-    stretch_ = {};
+    stretch_.end_s = NO_STRETCH;
     cells_.clear();
     rows_.clear();
     first_row_ = 0;
@@ -91,7 +87,7 @@ void AccelerationCells::cut_behind(double s) {
     while (!cells_.empty() && cells_.back().end_s() > s) {
         rows_.resize(cells_.back().row - first_row_);
         begin_s_ = cells_.back().s;
-        stretch_ = {};
+        stretch_.end_s = NO_STRETCH;
         cells_.pop_back();
     }
 }
@@ -155,7 +151,6 @@ void AccelerationCells::begin_stretch(const Run &run, double end) {
     const double s = end_s();
     const Span &span = (*run.spans)[span_at(*run.spans, s + rounding_at(s))];
     const double to = next_point(run, span, end), length = to - s;
-    stretch_ = {};
     stretch_.end_s = to;
     if (!(length > 0)) {
         return;
@@ -184,13 +179,14 @@ void AccelerationCells::begin_stretch(const Run &run, double end) {
     stretch_.end = at[0];
 }
 
-/// Limits change little enough between the ends of the cell, for every motion in it up to its `most_b`.
-bool AccelerationCells::isShort(const AccelerationCell &cell, const PointLimits &start,
-                                const PointLimits &end) const noexcept {
+/// How much limits change between the ends of the cell, for every motion in it up to its `most_b`, over what
+/// is allowed.
+double AccelerationCells::change_in(const AccelerationCell &cell, const PointLimits &start,
+                                    const PointLimits &end) const noexcept {
     const AccelerationRange slow = range(cell, 0), fast = range(cell, cell.most_b);
     const double a = std::max({slow.high, -slow.low, std::abs(fast.high), std::abs(fast.low)});
     const PathMotion most{cell.most_b, std::min(a, cell.most_b / (2 * cell.length))};
-    return square(cell.length) * change_between(start, end, cell.length, most) <= 8 * BETWEEN;
+    return square(cell.length) * change_between(start, end, cell.length, most) / (8 * BETWEEN);
 }
 
 /// Adds cells up to `to`: one, or several where limits change too much. Where these would take less than
@@ -206,7 +202,7 @@ void AccelerationCells::add(const Run &run, double to) {
     cell.cap_b = stretch_.rest.v2 > 0 ? 1 / stretch_.rest.v2 : 1e300;
     if (!cell.is_straight) {
         cell.most_b = most_before(cell, std::min(cell.ends[0].machine_b, cell.ends[1].machine_b), 1e300);
-        while (!isShort(cell, stretch_.end, end) && cell.most_b > LEAST_B) {
+        while (cell.most_b > LEAST_B && change_in(cell, stretch_.end, end) > 1) {
             if (cell.length > 2 * LEAST_CELL_S * std::sqrt(cell.most_b)) {
                 rows_.resize(row - first_row_);
                 add(run, 0.5 * (from + to));
@@ -290,6 +286,22 @@ AccelerationRange AccelerationCells::range(const AccelerationCell &cell, double 
         take_norm(cell.norms[1], b, range);
     }
     return range;
+}
+
+double AccelerationCells::lowest(const AccelerationCell &cell, double b) const noexcept {
+    double low = -1e300;
+    const Row *rows = rows_of(cell);
+    for (std::size_t i = 0; i < cell.rows; ++i) {
+        low = std::max(low, -rows[i].r - rows[i].c * b);
+    }
+    for (const Norm &n : cell.norms) {
+        if (n.aa > LEAST) {
+            low = std::max(
+                low,
+                -(std::sqrt(std::max((n.ab * n.ab - n.aa * n.bb) * b * b + n.aa, 0.0)) + n.ab * b) / n.aa);
+        }
+    }
+    return low;
 }
 
 double AccelerationCells::most_before(const AccelerationCell &cell, double most, double next) const noexcept {

@@ -45,7 +45,7 @@ class AccelerationCells {
     /// Part of a limit by which it may be exceeded between the ends of a cell.
     static constexpr double BETWEEN = 2e-3;
     /// Longest time of a cell, about [s].
-    static constexpr double CELL_S = 1e-3;
+    static constexpr double CELL_S = 2e-3;
 
     /// No cells; the next one begins at `s`.
     void begin(double s) noexcept;
@@ -72,6 +72,8 @@ class AccelerationCells {
 
     /// At the squared speed `b` at the start of the cell.
     AccelerationRange range(const AccelerationCell &cell, double b) const noexcept;
+    /// `range(cell, b).low`.
+    double lowest(const AccelerationCell &cell, double b) const noexcept;
     /// Largest squared speed at the start of the cell from which `next` or less is reached at its end, at
     /// most `most`.
     double most_before(const AccelerationCell &cell, double most, double next) const noexcept;
@@ -80,9 +82,10 @@ class AccelerationCells {
     struct Row {
         double c = 0, r = 0;
     };
+    static constexpr double NO_STRETCH = -1e300;
     /// Between two points where the formula of the curve or of a limit changes.
     struct Stretch {
-        double end_s = -1e300;
+        double end_s = NO_STRETCH;
         CurvePlace place;
         CapRest rest;
         double cell = 0;          ///< longest cell, for what rows may change in it
@@ -94,8 +97,8 @@ class AccelerationCells {
     void add(const Run &run, double to);
     static AccelerationCell make(double from, double to, const std::array<PointLimits, 2> &limits,
                                  const std::array<double, 2> &at, bool is_straight, std::vector<Row> &rows);
-    bool isShort(const AccelerationCell &cell, const PointLimits &start,
-                 const PointLimits &end) const noexcept;
+    double change_in(const AccelerationCell &cell, const PointLimits &start,
+                     const PointLimits &end) const noexcept;
     double next_point(const Run &run, const Span &span, double end) const noexcept;
     const Row *rows_of(const AccelerationCell &cell) const noexcept {
         return cell.row < IN_PART ? &rows_[cell.row - first_row_] : part_rows_[cell.row - IN_PART].data();

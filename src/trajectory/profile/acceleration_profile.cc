@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace mw::trajectory::profile {
 
 namespace {
 
 /// Longest cell of time [s]: another plan or a stop begins at the start of one.
-constexpr double MOST_CELL_S = 2 * AccelerationCells::CELL_S;
+constexpr double MOST_CELL_S = AccelerationCells::CELL_S;
 /// The same of the first one from standstill, in servo periods: a stop that is requested in the first period
 /// begins in the second.
 constexpr double FIRST_CELL = 1.2;
@@ -20,8 +21,16 @@ double square(double x) noexcept {
     return x * x;
 }
 
-double rounding_at(double s) noexcept {
-    return 1e-12 * std::max(1.0, std::abs(s));
+/// The motion with one acceleration from a point to the squared speed `b` after `length`. Its duration is 0
+/// if it has no speed or is shorter than rounding.
+TimeCell cell_between(const MotionPoint &from, double b, double length) noexcept {
+    constexpr double LEAST_CELL_S = 1e-12;
+    const double v = std::sqrt(from.b), next = std::sqrt(std::max(b, 0.0));
+    if (!(length > LEAST_CELL_S * (v + next))) {
+        return {};
+    }
+    const double per_time = (v + next) / (2 * length);
+    return {1 / per_time, {from.s, v, 0.5 * (next - v) * per_time, 0, 0, 0}};
 }
 
 }  // namespace
@@ -36,10 +45,7 @@ void AccelerationProfile::begin(double s) noexcept {
 
 void AccelerationProfile::take_limits(const Run &run) {
     run_ = run;
-    run_.cap_reach = 0;
-    for (std::size_t k = 0; run.caps != nullptr && k < run.caps->size(); ++k) {
-        run_.cap_reach = std::max(run_.cap_reach, (*run.caps)[k].reach);
-    }
+    run_.find_cap_reach();
     // A seam at the end of what is known may lower limits before it. At a stop there is none.
     if (had_stop_ && run.end_s != run_end_s_) {
         cells_.cut_behind(run_end_s_ - reach_);
@@ -48,8 +54,13 @@ void AccelerationProfile::take_limits(const Run &run) {
     reach_ = largest_reach(end, run.limits, period_s_);
     run_end_s_ = run.end_s;
     had_stop_ = run.has_stop;
-    drivable_end_s_ = run.has_stop ? run.end_s : run.end_s - reach_;
-    take_joints(run);
+    // The interpolation of the joints is accurate to a part of a jerk limit.
+    JointLimits accuracy = run.joints;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(accuracy.count); ++j) {
+        accuracy.jerk[j] = accuracy.acceleration[j] / LEAST_RAMP_S;
+    }
+    run_.add_joints(joint_curve_, accuracy, time_cells_.empty() ? start_s_ : time_cells_[0].c[0]);
+    drivable_end_s_ = run_.has_stop ? run_.end_s : run_.end_s - reach_;
     // What seams leave of limits is counted by the jerk of a full acceleration within one period.
     const auto set_jerk = [&](Bounds &b) { b.jerk = b.acceleration / period_s_; };
     for (std::size_t j = 0; j < joint_curve_.joints(); ++j) {
@@ -57,28 +68,6 @@ void AccelerationProfile::take_limits(const Run &run) {
     }
     std::for_each(run_.limits.axes.begin(), run_.limits.axes.end(), set_jerk);
     set_jerk(run_.limits.xyz);
-}
-
-/// Computes the joints along what is known. Where there are none the run ends before.
-void AccelerationProfile::take_joints(const Run &run) {
-    if (run.map == nullptr || run.joints.count == 0) {
-        return;
-    }
-    if (joint_curve_.joints() == 0) {
-        // The error of the interpolation is measured by a jerk.
-        JointLimits limits = run.joints;
-        for (std::size_t j = 0; j < static_cast<std::size_t>(limits.count); ++j) {
-            limits.jerk[j] = limits.acceleration[j] / LEAST_RAMP_S;
-        }
-        joint_curve_.begin(run.map, limits);
-    }
-    joint_curve_.cover(*run.spans);
-    joint_curve_.drop_before(time_cells_.empty() ? start_s_ : time_cells_[0].c[0]);
-    run_.joint_curve = &joint_curve_;
-    if (joint_curve_.drivable_s() < drivable_end_s_) {
-        drivable_end_s_ = run_.end_s = joint_curve_.drivable_s();
-        run_.has_stop = true;
-    }
 }
 
 /// Squared speed limits of a cell. `feed`: that at the start of a cell before it.
@@ -163,7 +152,7 @@ void AccelerationProfile::lay(const State &from, double time_s) {
 /// The squared speed at the end of the cell of the soonest braking; 0 with `stop_s` where it ends in the
 /// cell.
 double AccelerationProfile::brake(const AccelerationCell &cell, double b, double &stop_s) const noexcept {
-    const double a = cell.is_straight ? -cell.least : cells_.range(cell, b).low;
+    const double a = cell.is_straight ? -cell.least : cells_.lowest(cell, b);
     const double next = b + 2 * a * cell.length;
     if (next > 0) {
         return next;
@@ -200,25 +189,22 @@ void AccelerationProfile::allow_braking(const State &from) {
 }
 
 /// Adds cells of time with one acceleration: from a point to the squared speed `b` after `length`.
-void AccelerationProfile::add(std::vector<TimeCell> &out, const State &from, double b, double length) const {
-    const double v = std::sqrt(from.b), next = std::sqrt(std::max(b, 0.0));
-    if (!(length > 0) || !(v + next > 0)) {
+void AccelerationProfile::add(const State &from, double b, double length) {
+    const TimeCell whole = cell_between(from, b, length);
+    if (!(whole.duration > 0)) {
         return;
     }
-    constexpr double LEAST_CELL_S = 1e-12;
-    const double time = 2 * length / (v + next), a = (next - v) / time;
-    if (time < LEAST_CELL_S) {
-        return;
-    }
+    const double v = whole.c[1], half_a = whole.c[2];
     const auto push = [&](double t, double duration) {
-        out.push_back({duration, {from.s + t * (v + 0.5 * a * t), v + a * t, 0.5 * a, 0, 0, 0}});
+        time_cells_.push_back(
+            {duration, {from.s + t * (v + half_a * t), v + 2 * half_a * t, half_a, 0, 0, 0}});
     };
-    const double start = FIRST_CELL * period_s_, first = v > 0 || time < 2 * start ? 0.0 : start;
+    const double start = FIRST_CELL * period_s_, first = v > 0 || whole.duration < 2 * start ? 0.0 : start;
     if (first > 0) {
         push(0, first);
     }
-    const int parts = static_cast<int>(std::max(std::ceil((time - first) / MOST_CELL_S), 1.0));
-    const double part = (time - first) / parts;
+    const int parts = static_cast<int>(std::max(std::ceil((whole.duration - first) / MOST_CELL_S), 1.0));
+    const double part = (whole.duration - first) / parts;
     for (int i = 0; i < parts; ++i) {
         push(first + part * i, part);
     }
@@ -233,9 +219,9 @@ void AccelerationProfile::drive_straight(const AccelerationCell &cell, std::size
         b > limit ? std::max(limit, std::min(end, b)) : std::min(limit, 0.5 * (b + end + a2 * length));
     const double first = std::min(std::abs(top - b) / a2, length);
     const double last = std::min(std::abs(top - end) / a2, length - first);
-    add(time_cells_, from, top, first);
-    add(time_cells_, {cell.s + first, top}, top, length - first - last);
-    add(time_cells_, {cell.end_s() - last, top}, end, last);
+    add(from, top, first);
+    add({cell.s + first, top}, top, length - first - last);
+    add({cell.end_s() - last, top}, end, last);
     from = {cell.end_s(), end};
 }
 
@@ -246,7 +232,7 @@ void AccelerationProfile::drive(const AccelerationCell &cell, std::size_t k, Sta
     }
     const double end =
         std::clamp(from.b + 2 * cell.length * cells_.range(cell, from.b).high, 0.0, most_[k + 1]);
-    add(time_cells_, from, end, cell.length);
+    add(from, end, cell.length);
     from = {cell.end_s(), end};
 }
 
@@ -256,8 +242,7 @@ double AccelerationProfile::pass_forward(State from) {
     double t = 0;
     for (std::size_t k = 0; k < speed_.size() && t < window_s_; ++k) {
         const std::size_t old = time_cells_.size();
-        const AccelerationCell cell = cell_at(k);
-        drive(cell, k, from);
+        drive(cell_at(k), k, from);
         for (std::size_t i = old; i < time_cells_.size(); ++i) {
             t += time_cells_[i].duration;
         }
@@ -312,7 +297,12 @@ bool AccelerationProfile::stop_soon(const State &from, std::size_t fixed) {
         return false;
     }
     time_cells_.resize(fixed);
-    time_cells_.insert(time_cells_.end(), stop.cells.begin(), stop.cells.end());
+    for (std::size_t k = 0; k < stop.cells.size(); ++k) {
+        const TimeCell &cell = stop.cells[k];
+        const bool is_last = k + 1 == stop.cells.size();
+        const double to = is_last ? stop.end_s : stop.cells[k + 1].c[0];
+        add({cell.c[0], square(cell.c[1])}, is_last ? 0 : square(stop.cells[k + 1].c[1]), to - cell.c[0]);
+    }
     end_s_ = stop.end_s;
     is_complete_ = true;
     return true;
@@ -320,27 +310,38 @@ bool AccelerationProfile::stop_soon(const State &from, std::size_t fixed) {
 
 Stop AccelerationProfile::stop_from(const State &start) {
     Stop out;
+    out.cells.reserve(speed_.size());
     State from = start;
-    std::size_t k = 0;
-    while (k + 1 < speed_.size() && cell_at(k).end_s() <= from.s) {
-        ++k;
-    }
-    AccelerationCell cell = cell_at(k);
-    if (from.s > cell.s) {
-        cell = cells_.part(run_, cell, from.s, cell.end_s(), AccelerationCells::Part::STOP);
+    const auto indices = std::views::iota(std::size_t{0}, speed_.size() - 1);
+    std::size_t k =
+        *std::ranges::partition_point(indices, [&](std::size_t i) { return cell_at(i).end_s() <= from.s; });
+    const AccelerationCell *cell = &cell_at(k);
+    AccelerationCell part;
+    if (from.s > cell->s) {
+        part = cells_.part(run_, *cell, from.s, cell->end_s(), AccelerationCells::Part::STOP);
+        cell = &part;
     }
     while (true) {
-        double stop_s = cell.end_s();
-        const double b = brake(cell, from.b, stop_s);
-        add(out.cells, from, b, (b > 0 ? cell.end_s() : stop_s) - from.s);
-        from = {b > 0 ? cell.end_s() : stop_s, b};
+        double stop_s = cell->end_s();
+        double b = brake(*cell, from.b, stop_s);
+        // A plan that stops at the end of the known curve, too, ends there except for rounding.
+        const bool is_last = k + 1 == speed_.size();
+        if (is_last && b <= ROUNDING * start.b) {
+            b = 0;
+        }
+        const double to = b > 0 ? cell->end_s() : stop_s;
+        const TimeCell motion = cell_between(from, b, to - from.s);
+        if (motion.duration > 0) {
+            out.cells.push_back(motion);
+        }
+        from = {to, b};
         if (!(b > 0)) {
             break;
         }
-        if (++k == speed_.size()) {
+        if (is_last) {
             return {};  // not on what is known
         }
-        cell = cell_at(k);
+        cell = &cell_at(++k);
     }
     out.end_s = from.s;
     return out;

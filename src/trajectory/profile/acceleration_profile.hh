@@ -14,6 +14,11 @@
 
 namespace mw::trajectory::profile {
 
+/// A point of the motion: its place on the curve, and the squared speed.
+struct MotionPoint {
+    double s = 0, b = 0;
+};
+
 /// Planner thread.
 class AccelerationProfile final : public PathTiming {
   public:
@@ -25,9 +30,8 @@ class AccelerationProfile final : public PathTiming {
     bool replan(const Run &run, std::size_t fixed) override { return plan(run, fixed); }
     void begin_stops(const Run &) override {}
     Stop next_stop(const Run &run, std::size_t fixed, StopEffort effort) override;
-    double stops_apart_s(double stop_s) const noexcept override {
-        return std::max(1.8 * AccelerationCells::CELL_S, 0.06 * stop_s);
-    }
+    double stops_apart_s(double stop_s) const noexcept override { return std::max(5e-3, 0.1 * stop_s); }
+    double committed_part() const noexcept override { return 1; }
     std::size_t cells() const noexcept override { return time_cells_.size(); }
     const TimeCell &cell(std::size_t k) const noexcept override { return time_cells_[k]; }
     bool isComplete() const noexcept override { return is_complete_; }
@@ -36,12 +40,8 @@ class AccelerationProfile final : public PathTiming {
     double drivable_s() const noexcept override { return joint_curve_.drivable_s(); }
 
   private:
-    /// A point of the motion.
-    struct State {
-        double s = 0, b = 0;
-    };
+    using State = MotionPoint;
     void take_limits(const Run &run);
-    void take_joints(const Run &run);
     void lay(const State &from, double time_s);
     /// Squared speeds at the ends of a cell.
     using Ends = std::array<double, 2>;
@@ -52,7 +52,7 @@ class AccelerationProfile final : public PathTiming {
     double pass_forward(State from);
     void drive(const AccelerationCell &cell, std::size_t k, State &from);
     void drive_straight(const AccelerationCell &cell, std::size_t k, State &from);
-    void add(std::vector<TimeCell> &out, const State &from, double b, double length) const;
+    void add(const State &from, double b, double length);
     Stop stop_from(const State &from);
     bool stop_soon(const State &from, std::size_t fixed);
     State state_at(std::size_t cell) const noexcept;

@@ -2,7 +2,9 @@
 // Rows of a cell near caps, and those of joints.
 #pragma once
 
-#include "trajectory/profile/cells.hh"
+#include "trajectory/profile/rest_map.hh"
+#include "trajectory/profile/rows.hh"
+#include "trajectory/profile/run.hh"
 
 namespace mw::trajectory::profile {
 

@@ -13,11 +13,6 @@ namespace mw::trajectory::profile {
 namespace {
 
 constexpr int NODES_PER_SPAN = 3;
-/// Nodes closer together count as one: places are sums of lengths, up to rounding.
-double rounding_at(double s) noexcept {
-    return 1e-12 * std::max(1.0, std::abs(s));
-}
-
 /// Largest change of direction in a cell [rad].
 constexpr double TURN_PER_CELL = 0.2;
 /// Cells in the time in which the jerk limit builds up an acceleration, and in that of a span.
@@ -50,19 +45,6 @@ double faster(double v, double ds, double acceleration, double jerk) noexcept {
 }
 
 }  // namespace
-
-double FeedLimit::share(const Pose &first) const noexcept {
-    const double length = along == Along::XYZ   ? geometry::norm_xyz(first)
-                          : along == Along::UVW ? geometry::norm_uvw(first)
-                                                : 1.0;
-    return length * length / (velocity * velocity);
-}
-
-std::size_t Run::feed_at(double s) const noexcept {
-    const auto at = std::lower_bound(feeds->begin(), feeds->end(), s,
-                                     [](const FeedLimit &f, double x) { return f.end_s < x; });
-    return std::min(static_cast<std::size_t>(at - feeds->begin()), feeds->size() - 1);
-}
 
 double RoughProfile::ramp_at(const Run &run, double s) noexcept {
     const Node node = node_at(run, span_at(*run.spans, s), s, s);
@@ -432,12 +414,6 @@ void RoughProfile::lay_between(double from, double to, std::size_t &node) {
         knots_.push_back({s, t - before});
         before = t;
     }
-}
-
-std::size_t span_at(const std::vector<Span> &spans, double s) noexcept {
-    const auto behind = std::upper_bound(spans.begin(), spans.end(), s,
-                                         [](double x, const Span &span) { return x < span.start_s; });
-    return static_cast<std::size_t>(std::max<long>(0, behind - spans.begin() - 1));
 }
 
 }  // namespace mw::trajectory::profile

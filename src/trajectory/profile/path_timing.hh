@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "trajectory/curve/span.hh"
-#include "trajectory/profile/cells.hh"
+#include "trajectory/profile/run.hh"
 
 namespace mw::trajectory::profile {
 
@@ -53,6 +53,8 @@ class PathTiming {
     }
     /// Time between the starts of two stops of a plan, the second of which takes `stop_s` [s].
     virtual double stops_apart_s(double stop_s) const noexcept = 0;
+    /// Part of the time of a plan that may be committed. What is behind it is for the stop.
+    virtual double committed_part() const noexcept = 0;
     /// Cells that are planned and not dropped.
     virtual std::size_t cells() const noexcept = 0;
     virtual const TimeCell &cell(std::size_t k) const noexcept = 0;

@@ -16,7 +16,7 @@ double square(double x) noexcept {
 
 }  // namespace
 
-double PointLimits::largest(const std::array<double, MOST_ROWS> &q, double norm2) const noexcept {
+double PointLimits::largest(const Values &q, double norm2) const noexcept {
     double most = LEAST;
     for (std::size_t i = 0; i < count; ++i) {
         most = std::max(most, std::abs(q[i]));

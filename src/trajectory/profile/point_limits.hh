@@ -2,8 +2,7 @@
 // Derivatives of the coordinates and joints at a point of a curve, over their limits.
 #pragma once
 
-#include <array>
-
+#include "base/raw_array.hh"
 #include "trajectory/profile/cap_rows.hh"
 
 namespace mw::trajectory::profile {
@@ -16,10 +15,10 @@ struct PointLimits {
         double aa = 0, ab = 0, bb = 0;
     };
 
-    std::size_t count = 0;  ///< coordinates that move, and joints
-    /// First to third derivative by s over the acceleration limit.
-    std::array<double, MOST_ROWS> q1{}, q2{}, q3{};
-    std::array<double, MOST_ROWS> per_velocity{};  ///< acceleration limit over velocity limit
+    std::size_t count = 0;                       ///< coordinates that move, and joints
+    using Values = RawArray<double, MOST_ROWS>;  ///< the first `count` have a value
+    Values q1, q2, q3;    ///< first to third derivative by s over the acceleration limit
+    Values per_velocity;  ///< acceleration limit over velocity limit
     Norm norm;
     double xyz2 = 0, uvw2 = 0;  ///< squared derivatives by s of the lengths over X Y Z and U V W
     double machine_b = 1e300;   ///< squared path speed at the velocity limits
@@ -31,7 +30,7 @@ struct PointLimits {
     double bend() const noexcept { return largest(q2, norm.bb); }
 
   private:
-    double largest(const std::array<double, MOST_ROWS> &q, double norm2) const noexcept;
+    double largest(const Values &q, double norm2) const noexcept;
 };
 
 /// Where a point lies: its span, and the part of the joints.

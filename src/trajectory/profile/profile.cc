@@ -46,14 +46,12 @@ void Profile::take_limits(const Run &run) {
         b.acceleration *= ACCELERATION_SHARE;
         b.jerk = std::min(b.jerk * JERK_SHARE, b.acceleration / LEAST_RAMP_S);
     };
-    run_.cap_reach = 0;
-    for (std::size_t k = 0; run.caps != nullptr && k < run.caps->size(); ++k) {
-        run_.cap_reach = std::max(run_.cap_reach, (*run.caps)[k].reach);
-    }
+    run_.find_cap_reach();
     const auto &spans = *run.spans;
     const curve::CurvePoint end = curve::point_at(spans[span_at(spans, run.end_s)], run.end_s);
     reach_ = largest_reach(end, run.limits, settings_.period_s);
-    take_joints(run);
+    run_.add_joints(joint_curve_, run.joints,
+                    plan_.knots.empty() ? start_s_ : plan_.map.at(plan_.knots[0]).s);
     for (std::size_t j = 0; j < joint_curve_.joints(); ++j) {
         Bounds b = bounds_of(run.joints, j);
         share(b);
@@ -63,23 +61,6 @@ void Profile::take_limits(const Run &run) {
     }
     std::for_each(run_.limits.axes.begin(), run_.limits.axes.end(), share);
     share(run_.limits.xyz);
-}
-
-/// Computes the joints along what is known. Where there are none the run ends before.
-void Profile::take_joints(const Run &run) {
-    if (run.map == nullptr || run.joints.count == 0) {
-        return;
-    }
-    if (joint_curve_.joints() == 0) {
-        joint_curve_.begin(run.map, run.joints);
-    }
-    joint_curve_.cover(*run.spans);
-    joint_curve_.drop_before(plan_.knots.empty() ? start_s_ : plan_.map.at(plan_.knots[0]).s);
-    run_.joint_curve = &joint_curve_;
-    if (joint_curve_.drivable_s() < run_.end_s) {
-        run_.end_s = joint_curve_.drivable_s();
-        run_.has_stop = true;
-    }
 }
 
 void Profile::lay_cells(std::size_t fixed) {

@@ -34,6 +34,7 @@ class Profile final : public PathTiming {
     void begin_stops(const Run &run) override;
     Stop next_stop(const Run &run, std::size_t fixed, StopEffort effort) override;
     double stops_apart_s(double stop_s) const noexcept override { return std::max(1e-2, 0.12 * stop_s); }
+    double committed_part() const noexcept override { return 0.5; }
     std::size_t cells() const noexcept override {
         return plan_.ends_early ? ending_at_ + ending_.size() : plan_.laid();
     }
@@ -56,7 +57,6 @@ class Profile final : public PathTiming {
     /// Part of a limit by which rounding may leave it.
     static constexpr double ROUNDING = 1e-6;
     void take_limits(const Run &run);
-    void take_joints(const Run &run);
     void lay_cells(std::size_t fixed);
     void prepare(std::size_t fixed, std::size_t n);
     double make_room();

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "trajectory/profile/cells.hh"
+#include "trajectory/profile/run.hh"
 
 namespace mw::trajectory::profile {
 
