@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace mw::trajectory::curve {
 
@@ -53,6 +54,8 @@ void CurveBuilder::begin(double s) noexcept {
     caps_.assign(1, {s, widest_, true});
     knots_.assign(1, s);
     spans_.clear();
+    open_.clear();
+    last_fit_ = {};
     fixed_ = 1;
     first_open_ = 0;
     final_worst_ = 0;
@@ -85,6 +88,7 @@ void CurveBuilder::extend(bool complete) {
         spread_caps();
         lay_knots();
         place_controls();
+        make_spans();
         if (check()) {
             break;
         }
@@ -189,10 +193,37 @@ void CurveBuilder::place_controls() {
             controls_[i] = kept_in_room(control, means_[i]);
         }
     }
+}
+
+/// The knots that span k depends on are those that a span of the fit was made from.
+bool CurveBuilder::hasSameKnots(std::size_t k, const Fit &fit, std::size_t of_fit) const noexcept {
+    const auto knots = [](const std::vector<double> &all, std::size_t span) {
+        const std::size_t from = span > KNOTS_BEFORE ? span - KNOTS_BEFORE : 0;
+        const std::size_t to = std::min(span + KNOTS_BEHIND + 2, all.size());
+        return std::span(all).subspan(from, to - from);
+    };
+    // At an end of the row fewer knots count.
+    return (k < KNOTS_BEFORE ? k == of_fit : of_fit >= KNOTS_BEFORE) &&
+           std::ranges::equal(knots(knots_, k), knots(fit.knots, of_fit));
+}
+
+void CurveBuilder::make_spans() {
+    std::swap(open_, last_fit_.spans);
     open_.clear();
-    for (std::size_t k = first_open_; k < row.spans(); ++k) {
-        open_.push_back(span_of(k));
+    const std::size_t count = knots_.size() - 1;
+    std::size_t old = 0;
+    for (std::size_t k = first_open_; k < count; ++k) {
+        while (old < last_fit_.spans.size() && last_fit_.spans[old].span.start_s < knots_[k]) {
+            ++old;
+        }
+        if (old < last_fit_.spans.size() && hasSameKnots(k, last_fit_, last_fit_.first + old)) {
+            open_.push_back(last_fit_.spans[old]);
+        } else {
+            open_.push_back({span_of(k)});
+        }
     }
+    last_fit_.knots = knots_;
+    last_fit_.first = first_open_;
 }
 
 /// The weights of a B-spline are 0 or above and add up to 1, so each coordinate of the curve lies between
@@ -260,7 +291,8 @@ void CurveBuilder::narrow(double s, double excess, double length) {
     }
 }
 
-void CurveBuilder::check_span(const Span &span, std::size_t &move) {
+/// Returns the deviation over the tolerance. Where it is above 1 the knots become narrower.
+double CurveBuilder::check_span(const Span &span, std::size_t &move) {
     // The Bernstein coefficients of the second derivative bound it: between two points the deviation exceeds
     // the larger of theirs by at most an eighth of the bound times the square of their distance.
     const double per2 = 1.0 / (span.length * span.length);
@@ -294,10 +326,10 @@ void CurveBuilder::check_span(const Span &span, std::size_t &move) {
         s = end;
         move += s < span.end_s() && !is_last ? 1 : 0;
     }
-    worst_ = std::max(worst_, worst);
     if (worst > 1) {
         narrow(worst_s, worst, span.length);
     }
+    return worst;
 }
 
 void CurveBuilder::move_spans(std::vector<Span> &spans) {
@@ -311,8 +343,11 @@ bool CurveBuilder::check() {
     is_narrowed_ = false;
     worst_ = 0;
     std::size_t move = 0;
-    for (const Span &span : open_) {
-        check_span(span, move);
+    for (OpenSpan &open : open_) {
+        if (open.worst == UNKNOWN || open.worst > 1) {
+            open.worst = check_span(open.span, move);
+        }
+        worst_ = std::max(worst_, open.worst);
     }
     return found_.empty() && !is_narrowed_;
 }
@@ -321,9 +356,9 @@ void CurveBuilder::keep_final(bool complete) {
     // A corner behind the end may narrow knots as far back as this.
     const double end = complete ? path_.length() : path_.length() - widest_ / SPACING_GROWTH;
     std::size_t final = 0;
-    while (final < open_.size() && open_[final].end_s() <= end &&
+    while (final < open_.size() && open_[final].span.end_s() <= end &&
            (complete || first_open_ + final + 1 + KNOTS_BEHIND < knots_.size())) {
-        spans_.push_back(open_[final++]);
+        spans_.push_back(open_[final++].span);
     }
     if (final == 0) {
         return;

@@ -72,12 +72,26 @@ class CurveBuilder {
     void place_controls();
     Pose kept_in_room(const Pose &control, const Pose &mean) const noexcept;
     Span span_of(std::size_t k) const noexcept;
+    /// A span that is not final, and its deviation over the tolerance.
+    struct OpenSpan {
+        Span span;
+        double worst = UNKNOWN;
+    };
+    /// The open spans of a round, and the knots that they were made from.
+    struct Fit {
+        std::vector<double> knots;
+        std::size_t first = 0;  ///< span of the row of knots that is the first one
+        std::vector<OpenSpan> spans;
+    };
+    bool hasSameKnots(std::size_t k, const Fit &fit, std::size_t of_fit) const noexcept;
+    void make_spans();
     bool check();
-    void check_span(const Span &span, std::size_t &move);
+    double check_span(const Span &span, std::size_t &move);
     void narrow(double s, double excess, double length);
     void keep_final(bool complete);
 
     static Room endless() noexcept;
+    static constexpr double UNKNOWN = -1;
 
     double widest_;
     double start_s_ = 0;  ///< of the curve; later, end of the spans that were moved out
@@ -92,7 +106,9 @@ class CurveBuilder {
     std::size_t first_open_ = 0;  ///< span of the row of knots that is the first one not final
     std::vector<double> places_;
     std::vector<Pose> controls_, means_;
-    std::vector<Span> open_, spans_;
+    std::vector<Span> spans_;
+    std::vector<OpenSpan> open_;
+    Fit last_fit_;  ///< of the round before: what has the same knots stays the same
     double worst_ = 0, final_worst_ = 0;
     int rounds_ = 0;
 };
