@@ -17,7 +17,7 @@ function firstPage(): Plugin {
   };
 }
 
-// The output contains everything that the page needs; nothing is fetched from other servers.
+// The output contains all files of the page; nothing is fetched from other servers.
 export default defineConfig({
   plugins: [firstPage(), svelte()],
   build: {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 import { defineConfig } from 'vitest/config';
 
-// One machine and one browser at a time, because there are two cores and the machine runs in real time.
+// One machine and one browser at a time, because two cores are used and the machine runs in real time.
 export default defineConfig({
   test: {
     include: ['tests-browser/**/*.test.ts'],

@@ -16,7 +16,7 @@ interface Shown {
   number: string;
   text: string;
 }
-/** The request of the page; null if there is none. */
+/** The request shown on the page; null if there is none. */
 async function shown(): Promise<Shown | null> {
   return page.evaluate(() => {
     const prompt = document.querySelector<HTMLElement>('[data-testid=prompt]');
@@ -51,7 +51,7 @@ async function answer(asked: Shown, factor: number): Promise<void> {
   }
   await until(() => isNew(asked.number), asked.text, 20_000);
 }
-/** Follows the page until a request fits. */
+/** Fulfils requests of the page until one satisfies `stop`. */
 async function follow(stop: (asked: Shown) => boolean, factor = 1): Promise<Shown> {
   const end = Date.now() + 120_000;
   while (Date.now() < end) {
@@ -128,7 +128,7 @@ it('ends with the page, and continues where it was', async () => {
 it('comes to a ready machine with a corrected scale', async () => {
   const before = readFileSync(join(folder, 'machine.ini'), 'utf8');
   expect(before).toContain('STEP_SCALE = 160');
-  // The screw of X differs from its description: half of the travel.
+  // The screw of X has half the pitch that its description states.
   await follow((asked) => /Read the gauge on X/.test(asked.text));
   await answer((await shown()) as Shown, 0.5);
   const end = Date.now() + 240_000;

@@ -24,7 +24,7 @@ afterAll(async () => {
 
 const program = (): string => join(rig.programs, 'Flange.ngc');
 const field = (id: string) => page.getByTestId(`conv-${id}`);
-/** The list is not beside the form if the view is narrow. */
+/** In a narrow view the list and the form are on separate pages. */
 async function toList(): Promise<void> {
   await field('save').waitFor();
   await sleep(50);

@@ -20,7 +20,7 @@ const AFTER_MS = 450;
 const STYLES = ['frozen', 'hidden', 'closed'] as const;
 type Style = (typeof STYLES)[number];
 
-/** Servo time and computer time [both in s], and position of the joint. */
+/** Servo time and computer time [s], and the joint position. */
 interface Sample {
   servo: number;
   clock: number;
@@ -29,7 +29,7 @@ interface Sample {
 
 const rig = new Rig(byHand);
 const samples: Sample[] = [];
-/** Times at which the page has sent a renewal or the start of a jog, by the computer's clock. [s] */
+/** Computer times at which the page sent a renewal or the start of a jog. [s] */
 const sent: number[] = [];
 let watch: ChildProcess;
 let page: Page;
@@ -57,12 +57,12 @@ async function open(): Promise<void> {
       sent.push(timestamp);
     }
   });
-  await page.reload(); // so that its connection is observed from the beginning
+  await page.reload(); // reload, so that the connection is observed from its beginning
   await page.getByTestId('jog-X+').waitFor();
   await page.getByTestId('increment-continuous').click();
 }
 
-/** Servo time of a moment, interpolated between the samples before and after it. */
+/** Servo time of a moment, interpolated between two samples. */
 function servoTime(when: number): number {
   const next = samples.findIndex((one) => one.clock > when);
   const [before, after] = [samples[next - 1], samples[next]];
@@ -74,7 +74,7 @@ function servoTime(when: number): number {
 
 interface Judged {
   style: Style;
-  /** Time at its speed after the last renewal; time until it stopped; duration of a standstill in between. [s] */
+  /** Time at speed after the last renewal, time until it stopped, and duration of a standstill in between. [s] */
   delay: number;
   end: number;
   still: number;
@@ -86,7 +86,7 @@ function judge(style: Style, begun: number, last: number): Judged {
   const speeds = pairs.map(({ before, after }) => ({ at: after.servo, from: before.servo, speed: after.servo > before.servo ? Math.abs(after.place - before.place) / (after.servo - before.servo) : null }));
   const known = speeds.filter((one): one is { at: number; from: number; speed: number } => one.speed !== null);
   const inJog = known.filter((one) => one.from > from + 0.1 && one.at < to).map((one) => one.speed).sort((a, b) => a - b);
-  // position and time of a sample are not read at once, so the maximum is exceeded slightly
+  // position and time of a sample are not read simultaneously, so the maximum can be exceeded slightly
   const top = inJog[inJog.length >> 1] ?? NaN;
   const fast = known.filter((one) => one.speed > 0.9 * top).at(-1)?.at ?? NaN;
   const moved = known.filter((one) => one.speed > 1e-4).at(-1)?.at ?? NaN;
@@ -118,7 +118,7 @@ async function cut(style: Style): Promise<() => Promise<void>> {
   const frozen = page.evaluate((ms) => {
     const end = performance.now() + ms;
     while (performance.now() < end) {
-      // as a page whose script hangs
+      // simulates a page whose script hangs
     }
   }, AFTER_MS + 200);
   return async () => {

@@ -102,7 +102,7 @@ it('shows a panel of the shop, bound to HAL both ways', async () => {
   await until(() => rig.signal('own-switch') === 'TRUE', 'the switch');
   const [pressed] = await Promise.all([page.waitForResponse(/own-button/), page.getByTestId('press-own-button').click()]);
   expect(pressed.status()).toBe(200);
-  expect(rig.signal('own-button')).toBe('FALSE'); // a pulse, which the server ends
+  expect(rig.signal('own-button')).toBe('FALSE'); // a pulse: the server restores the value
   await page.getByTestId('number-own-number').fill('2,5');
   await page.getByTestId('send-own-number').click();
   await until(() => Number(rig.signal('own-number')) === 2.5, 'the number');

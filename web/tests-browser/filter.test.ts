@@ -6,7 +6,7 @@ import { afterAll, beforeAll, expect, it } from 'vitest';
 import type { Page } from 'playwright-core';
 import { errorsOf, judgeByAxe, Rig, text, until, untilText } from './rig';
 
-// Continues when the file GO exists; rejects a depth of 0.
+// Waits for the file GO; rejects a depth of 0.
 const FILTER = `#!/bin/sh
 depth=$(cat "$1")
 echo FILTER_PROGRESS=25 >&2

@@ -73,7 +73,7 @@ it('is drawn while it is read, and turned without waiting', async () => {
   gaps.sort((a, b) => a - b);
   const at = (share: number): string => (gaps[Math.min(Math.floor(gaps.length * share), gaps.length - 1)] ?? NaN).toFixed(0);
   console.log(`${LINES} lines: first points after ${first} ms, all after ${whole} ms, the page has up to ${memory.toFixed(0)} MB; ${gaps.length} frames while turned, median ${at(0.5)} ms, p99 ${at(0.99)} ms, longest ${at(1)} ms, ${await pieces()} pieces drawn in motion`);
-  // Limits for a busy computer; docs/user/screen.md has the figures of an idle one.
+  // Limits for a busy computer; docs/user/screen.md has the figures for an idle computer.
   expect(gaps.length).toBeGreaterThan(10);
   expect(Number(at(0.5))).toBeLessThan(150);
   expect(whole).toBeLessThan(Math.max(20_000, LINES / 250));

@@ -24,7 +24,7 @@ afterAll(async () => {
   await Promise.all(rigs.map((rig) => rig.end()));
 });
 
-/** Picture of the path in each size. */
+/** Saves a picture of the path in each size. */
 async function pictures(page: Page, name: string): Promise<void> {
   for (const [width, height] of PICTURES === undefined ? [] : ([[390, 844], [800, 480], [1280, 800]] as const)) {
     await page.setViewportSize({ width, height });

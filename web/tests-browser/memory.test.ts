@@ -14,7 +14,7 @@ const rig = new Rig();
 let page: Page;
 let session: CDPSession;
 
-/** The page's socket records the statuses, and replays them with a continuing clock. */
+/** The page's socket records statuses and replays them with continuing time stamps. */
 const RECORDER = `
 const Real = window.WebSocket;
 window.recorded = [];
@@ -90,7 +90,7 @@ afterAll(async () => {
 
 it('keeps its memory over a shift', async () => {
   const statuses = Math.round(HOURS * 3600 * STATUS_HZ);
-  const warm = Math.max(2400, Math.round(statuses / 20)); // a minute of plots and a trail are then complete
+  const warm = Math.max(2400, Math.round(statuses / 20)); // after a minute, the plots and the trail have their full size
   expect(await page.evaluate(() => (window as unknown as Replayer).recorded.length)).toBeGreaterThan(50);
   await play(warm);
   const before = await heap();

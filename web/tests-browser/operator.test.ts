@@ -334,7 +334,7 @@ describe('overrides by steps', () => {
     for (const [width, height] of [[1280, 800], [800, 480]] as const) {
       await page.setViewportSize({ width, height });
       for (const id of ['spindle-reverse-0', 'spindle-stop-0', 'spindle-forward-0', 'flood', 'mist']) {
-        // The layout of the page changes some time after its size.
+        // The page layout changes shortly after a change of the window size.
         await until(() => page.getByTestId(id).evaluate((button) => {
           const { x, y, width: wide, height: high } = button.getBoundingClientRect();
           return x >= 0 && wide >= 44 && high >= 44 && button.contains(document.elementFromPoint(x + wide / 2, y + high / 2));

@@ -27,7 +27,7 @@ async function put(hold: boolean, axes: number[]): Promise<number> {
   }, [hold, axes] as const);
 }
 const POLLS = 4;
-/** Waits until the page has polled several times, to detect a delayed motion. */
+/** Waits until the page has polled several times, so that a delayed motion is detected. */
 async function set(hold: boolean, axes: number[]): Promise<void> {
   const before = await put(hold, axes);
   await until(() => page.evaluate((polls) => (window as unknown as Faked).polls >= polls, before + POLLS), 'polls');
@@ -106,7 +106,7 @@ it('does nothing in another view, nor when it is switched off', async () => {
   await set(true, [0.9, 0, 0, 0]);
   expect(await stands()).toBe(true);
   await page.getByTestId('pad-on').check();
-  expect(await stands()).toBe(true); // the stick is out of its centre
+  expect(await stands()).toBe(true); // the stick is off centre
   await page.setViewportSize({ width: 390, height: 844 });
   await page.getByTestId('tab-path').click();
   for (const [hold, x] of [[false, 0], [true, 0], [true, 0.9]] as const) {

@@ -26,10 +26,7 @@ afterAll(async () => {
   await rig.end();
 });
 
-/**
- * Touches the tip of the probe, or the setter, when the view asks for it, because an earlier contact is not
- * accepted.
- */
+/** Touches the tip of the probe, or the setter, when the view asks for it. An earlier contact is not accepted. */
 async function touchByHand(): Promise<void> {
   await untilText(page, 'probe-hint', /touch its tip by hand|Press the setter/);
   await untilText(page, 'run-state', 'Idle');

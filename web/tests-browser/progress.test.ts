@@ -8,7 +8,7 @@ const rig = new Rig();
 let page: Page;
 
 beforeAll(async () => {
-  // 12 s at its feed; each corner of the zigzag and the small circle lose some time.
+  // 12 s at the programmed feed; the corners of the zigzag and the small circle take longer.
   const zigzag = Array.from({ length: 20 }, (_, i) => `X${10 + (i % 2)} Y${i * 0.5}`).join('\n');
   rig.write('part.ngc', `G21 G90 G61 F1200\nG1 X100\nX0\n${zigzag}\nG2 X12 I0.5 F20000\nG1 X60 F600\nM2\n`);
   await rig.startServer();
@@ -75,6 +75,6 @@ it('colours the path by the speed reached', async () => {
   const legend = await text(page, 'legend');
   const top = Number(/(\d+) mm\/min$/.exec(legend)?.[1]);
   expect(top).toBeGreaterThanOrEqual(1200);
-  expect(top).toBeLessThan(20_000); // the feed is not reached on such a small circle
+  expect(top).toBeLessThan(20_000); // the small circle does not reach the feed
   expect(errorsOf(page)).toEqual([]);
 });

@@ -25,7 +25,7 @@ function ask(address: string, method: string, path: string, headers: Record<stri
 }
 const bearer = (token: string): Record<string, string> => ({ Authorization: `Bearer ${token}` });
 
-/** Sends one command on a socket of the page; returns its outcome. */
+/** Sends one command on a socket of the page and returns its outcome. */
 async function command(page: Page, order: object): Promise<{ progress: string; reason?: string }> {
   return page.evaluate(
     (sent) =>

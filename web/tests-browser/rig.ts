@@ -110,7 +110,7 @@ export class Rig {
     return one.process;
   }
 
-  /** On a free port, or on the previous one. */
+  /** On a free port, or on the port used before. */
   async startServer(port = 0, words: string[] = []): Promise<ChildProcess> {
     const one = this.begin(['ui', this.ini, '--port', String(port), ...words]);
     const told = (): string => readFileSync(one.output, 'utf8');
@@ -177,7 +177,7 @@ export class Rig {
     return page;
   }
 
-  /** Samples of the X axis, lines of tests/e2e/joint_watch.py, until its standard input is closed. */
+  /** Samples of the X axis (output of tests/e2e/joint_watch.py) until its standard input is closed. */
   watchJoint(): ChildProcess {
     const process = spawn('python3', [join(ROOT, 'tests/e2e/joint_watch.py'), join(BUILD, 'lib/python')], { env: this.env, stdio: ['pipe', 'pipe', 'inherit'] });
     this.started.push({ process, output: '' });
@@ -238,7 +238,7 @@ interface Finding {
 /** Checks that axe-core finds nothing. */
 export async function judgeByAxe(page: Page, what: string): Promise<void> {
   if (!(await page.evaluate(() => 'axe' in window))) {
-    await page.evaluate(AXE); // the rules of the page permit no script tag
+    await page.evaluate(AXE); // the page's content security policy permits no script tag
   }
   const found = await page.evaluate(async () => {
     const { axe } = window as unknown as { axe: { run(options: object): Promise<{ violations: Finding[] }> } };
@@ -258,7 +258,7 @@ export async function text(page: Page, id: string): Promise<string> {
 /** Opens a view by its tab, or by the list of views if the tabs do not fit. */
 export async function openView(page: Page, id: string): Promise<void> {
   const [tab, more] = [page.getByTestId(`tab-${id}`), page.getByTestId('tab-more')];
-  // The page may be changing its size.
+  // The page layout may be changing.
   await until(async () => {
     if (!(await tab.isVisible()) && (await more.isVisible())) {
       await more.click({ timeout: 1000 }).catch(() => undefined);
@@ -291,7 +291,7 @@ export async function bringUp(page: Page): Promise<void> {
   await untilText(page, 'run-state', 'Idle');
 }
 
-/** A picture of the page and its text after a failed test, if MW_SCREEN_PICTURES names a folder. */
+/** Saves a picture of the page and its text after a failed test, if MW_SCREEN_PICTURES names a folder. */
 export async function showFailure(context: TestContext, page: Page): Promise<void> {
   const folder = process.env['MW_SCREEN_PICTURES'];
   if (context.task.result?.state === 'fail' && folder !== undefined) {

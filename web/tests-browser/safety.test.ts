@@ -17,7 +17,7 @@ async function open(name: string): Promise<void> {
   await tab('programs');
   await page.getByTestId(`open-${name}`).click();
 }
-/** Checks that the machine does not move within a time in which it would. */
+/** Checks that the machine does not move for a sufficiently long time. */
 async function staysStopped(): Promise<void> {
   const before = [rig.position(0), rig.position(1)];
   await sleep(400);

@@ -124,7 +124,7 @@ describe('offsets', () => {
     await page.getByTestId('touch-off-set').click();
     await untilText(page, 'g5x-Y', '3.000');
     await untilText(page, 'work-Y', '-3.000');
-    // Offsets of another system are changed in the table.
+    // Offsets of other coordinate systems are changed in the table.
     await page.getByTestId('offsets-all').locator('summary').click();
     await page.getByTestId('all-G57-X').click();
     await page.getByTestId('offset-value').fill('12,5');
@@ -262,7 +262,7 @@ describe('clients that connect and disconnect', () => {
     const frozen = page.evaluate(() => {
       const end = performance.now() + 1200;
       while (performance.now() < end) {
-        // as a page whose script hangs
+        // simulates a page whose script hangs
       }
     });
     await sleep(300);

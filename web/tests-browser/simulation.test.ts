@@ -212,7 +212,7 @@ it.each([['dark', 'en'], ['light', 'en'], ['dark', 'de'], ['light', 'es']] as co
 }, 120_000);
 
 it('prepares 100,000 moves, and draws them while the slider moves', async () => {
-  // A surface by the ball nose T5. The printed times depend on the other jobs of the computer.
+  // A surface cut by the ball nose T5. The printed times depend on the other jobs of the computer.
   const lines = ['G21 G90 G17 G54 F3000', 'T5 M6', 'G43 H5', 'G0 Z5', 'G0 X0 Y0'];
   let [x, y, step] = [0, 0, 0.5];
   for (let i = 0; i < 100_000; ++i) {

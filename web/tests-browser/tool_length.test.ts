@@ -56,7 +56,7 @@ describe('a touch off with the length of another tool', () => {
     await tab('offsets');
     return text(page, 'g5x-Z');
   };
-  /** The outcome of a command may arrive before the status with its effect. */
+  /** The status with the effect may arrive after the outcome of a command. */
   const untilZero = (wanted: () => number): Promise<void> => until(async () => Math.abs(Number(await zero()) - wanted()) < 0.0005, 'the zero of Z');
 
   it('is warned of', async () => {

@@ -25,12 +25,11 @@ async function isUsable(what: string): Promise<void> {
     if (document.documentElement.scrollWidth > window.innerWidth + 1) {
       found.push(`the page is ${document.documentElement.scrollWidth} wide`);
     }
-    // Except for elements that scroll sideways (the row of tabs, long text) nothing is cut off at the side,
-    // and no panel exceeds the bottom.
+    // Elements that scroll sideways (tabs, long text) are exempt. No other element is cut off at the side, and no panel exceeds the bottom.
     for (const one of document.querySelectorAll('main button, main input, main select')) {
       const box = one.getBoundingClientRect();
       let above = one.closest('.tabs, .cm-editor, .hidden-text, .sideways') === null && one.checkVisibility() ? one.parentElement : null;
-      // A dialog is above its owner.
+      // A dialog covers its owner.
       for (; above !== null && getComputedStyle(above).position !== 'fixed'; above = above.parentElement) {
         const room = above.getBoundingClientRect();
         const isClip = getComputedStyle(above).overflowX !== 'visible' || above.classList.contains('panel');

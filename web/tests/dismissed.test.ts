@@ -13,7 +13,7 @@ it('knows after a reload what was dismissed', () => {
   const kept = storage();
   new Dismissed(kept).add([ERROR, NOTE]);
   const again = new Dismissed(kept);
-  // its number is exact, also from another server
+  // the message number is unique, also from another server
   expect(again.has({ ...ERROR, at: ERROR.at + 60_000 })).toBe(true);
   expect(again.has({ ...NOTE, at: NOTE.at + 1000 })).toBe(true);
 });
@@ -22,7 +22,7 @@ it('shows what is new, and the same fault again', () => {
   const kept = new Dismissed(storage());
   kept.add([ERROR, NOTE]);
   expect(kept.has({ ...ERROR, number: 5 })).toBe(false);
-  expect(kept.has({ ...ERROR, run: 'b' })).toBe(false); // of a machine that was started again
+  expect(kept.has({ ...ERROR, run: 'b' })).toBe(false); // the message of a machine that was restarted
   expect(kept.has({ ...NOTE, run: 'other' })).toBe(false); // of another server
   expect(kept.has({ ...NOTE, at: NOTE.at + 5000 })).toBe(false);
 });

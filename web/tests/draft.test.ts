@@ -75,7 +75,7 @@ describe('a key that moves the machine by its program', () => {
   it('steps on without one in the program whose step was confirmed, and in no other', () => {
     startByKey('step');
     confirmStart();
-    startByKey('step'); // the program has not begun: asks again
+    startByKey('step'); // the program has not started: ask again
     expect(actions.step).toHaveBeenCalledOnce();
     program('PAUSED');
     startByKey('step');

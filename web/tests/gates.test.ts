@@ -59,7 +59,7 @@ function readTable(): Map<string, Map<string, boolean>> {
 
 const table = readTable();
 
-/** The screen changes the mode by itself while nothing runs, so it may do what task permits after that. */
+/** The screen changes the mode by itself while nothing runs. So it may do what task permits in the new mode. */
 const ANY_MODE: Record<string, string[]> = { manual: ['manual', 'auto', 'mdi'], auto: ['manual', 'auto', 'mdi'], mdi: ['manual', 'auto', 'mdi'] };
 
 describe.each([
@@ -80,7 +80,7 @@ describe.each([
     if (isOpen) {
       expect(mayTask, 'the screen offers a command that task rejects').toBe(true);
     } else if (mayTask) {
-      // Task would accept these commands, and no others; the screen is more careful.
+      // Task accepts these commands and no others; the screen is stricter.
       expect([
         'resume proposed', // an approach is confirmed in its own dialog
         // Task accepts resume without effect when nothing is paused; the screen offers it only when it has an

@@ -30,7 +30,7 @@ describe('steps of an override', () => {
     await done();
     expect(sent).toEqual([110, 130]);
     await done();
-    nudger.step(-10, 110, RANGE); // the status contains only the first step
+    nudger.step(-10, 110, RANGE); // the status so far shows only the first step
     expect(sent).toEqual([110, 130, 120]);
   });
   it('stay within what the machine allows', async () => {

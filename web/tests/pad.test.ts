@@ -44,7 +44,7 @@ it('begins only with a stick that was centred when the button was pressed', () =
   expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]);
   expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]);
   expect(look(pad(true, [0, 0, 0, 0]))).toEqual([]);
-  expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]); // the button has not been pressed again
+  expect(look(pad(true, [1, 0, 0, 0]))).toEqual([]); // the hold button was not pressed again
   look(pad(false, [0, 0, 0, 0]));
   look(pad(true, [0, 0, 0, 0]));
   expect(look(pad(true, [1, 0, 0, 0]))).toEqual(['press X 1']);

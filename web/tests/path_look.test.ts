@@ -72,7 +72,7 @@ it('a lathe tool touches its controlled point from the side that its orientation
   for (const [orientation, [z, x]] of Object.entries(sides)) {
     const outline = tipOutline({ orientation: Number(orientation), diameter: 2, frontangle_deg: 0, backangle_deg: 0 }, 10);
     const extreme = (index: 0 | 1, sign: number): number => Math.max(...outline.map((point) => point[index] * sign));
-    // No part of the tool is outside its point on its cutting sides; the body extends away from them.
+    // On its cutting sides no part of the tool exceeds its point; the body extends away from them.
     if (z !== 0) {
       expect(extreme(0, z)).toBeCloseTo(0, 6);
       expect(extreme(0, -z)).toBeGreaterThan(5);

@@ -28,14 +28,14 @@ describe('the removed volume', () => {
     expect(removed(plunge(-5), { shape: 'vee', point_angle_deg: 90 }) / (Math.PI * 9 * 2 + Math.PI * 9)).toBeCloseTo(1, 2);
   });
   it('is that of a slot', () => {
-    // Its walls are exact to half a cell on each side.
+    // The walls are exact to half a cell on each side.
     const { cell } = simulate(movesOf(slot)).field;
     expect(Math.abs(removed(slot) / ((60 * 6 + Math.PI * 9) * 4) - 1)).toBeLessThan(cell / 6);
     expect(removed(slot, { shape: 'ball' }) / (60 * (6 + (Math.PI * 9) / 2) + Math.PI * 9 + (2 / 3) * Math.PI * 27)).toBeCloseTo(1, 2);
   });
   it('is that of a ramp, which a flat tool cuts with its lower edge', () => {
     const ramp: Point[] = [{ at: [20, 40, 10], line: 1, kind: 0 }, { at: [20, 40, 0], line: 2, kind: 1 }, { at: [80, 40, -6], line: 3, kind: 1 }];
-    // Each row of the tool reaches its own chord behind the axis; the integral over the width is known.
+    // Each row of the tool cuts a chord behind the axis; the integral over the width is known.
     const slices = 2000;
     let volume = 0;
     for (let i = 0; i < slices; ++i) {
@@ -130,7 +130,7 @@ describe('findings', () => {
       }
     }
     const inside: Point[] = Array.from({ length: 5000 }, (_, i) => ({ at: [40 + 10 * Math.sin(i / 50), 40 + 10 * Math.cos(i / 50), -18], line: 4, kind: 1 }) as Point);
-    // The holder leaves the wall that it has hit in line 6.
+    // The holder moves away from the wall it has hit in line 6.
     const all = [...points, { at: [40, 50, -18], line: 6, kind: 1 } as Point, ...inside, { at: [88, 40, -18], line: 5, kind: 1 } as Point];
     const form = tool({ stickout_mm: 12, holder_diameter_mm: 30 });
     const made = simulate(movesOf(all), { tools: new Map([[1, form]]), cell_mm: 0.25 });
@@ -143,7 +143,7 @@ describe('findings', () => {
     const hit = simulate(movesOf([SAFE, { at: [-30, 40, 10], line: 2, kind: 0 }, { at: [-30, 40, 13], line: 3, kind: 0 }, { at: [50, 40, 13], line: 4, kind: 0 }]), { fixtures }).findings.list();
     expect(hit.map((one) => [one.line, one.kinds, one.fixture])).toEqual([[2, ['fixture'], 'clamp']]);
     expect(hit[0]?.depth).toBeCloseTo(2, 3);
-    // At less than the radius of the tool beside it, and at more.
+    // Closer than the tool radius, and farther.
     const beside = (x: number): number => simulate(movesOf([{ at: [x, 60, 5], line: 1, kind: 0 }, { at: [x, 20, 5], line: 2, kind: 0 }]), { fixtures }).findings.list().length;
     expect([beside(12.9), beside(13.1)]).toEqual([1, 0]);
   });
@@ -190,7 +190,7 @@ describe('the moves of the server', () => {
     moves.take({ kind: 'offsets', first: Uint32Array.of(2), xyz: Float32Array.of(0, 0, 2) });
     moves.take({ kind: 'ranges', first: Uint32Array.of(0, 2), feed: Float32Array.of(1, 2), tool: Uint32Array.of(0, 5) });
     moves.take({ kind: 'moves', count: 3, places: Float32Array.of(10, 20, 30, 10, 21, 30, 10, 22, 33), lines: Uint32Array.of(1, 2, 3), kinds: Uint8Array.of(0, 0, 1), shades: new Uint8Array(3) });
-    // A jump comes before the first move with the offset.
+    // The jump precedes the first move with the offset.
     expect(moves.count).toBe(4);
     const rounded = [...moves.points.subarray(0, 12)].map((one) => Math.round(one * 1000) / 1000 + 0);
     expect(rounded).toEqual([0, 0, 0, 25.4, 0, 0, 25.4, 0, -50.8, 50.8, 0, 25.4]);
@@ -232,7 +232,7 @@ describe('a stock from an STL file', () => {
       const whole = simulate(movesOf([SAFE]), { stock: stock as Stock, cell_mm: 0.05 }).field;
       expect(whole.volume() / 200).toBeCloseTo(1, 2);
       const cut = simulate(movesOf([{ at: [0, 10, -3], line: 1, kind: 0 }, { at: [20, 10, -3], line: 2, kind: 1 }]), { stock: stock as Stock, cell_mm: 0.05, tools: new Map([[1, tool({ diameter_mm: 40 })]]) }).field;
-      // The part above half its height is an eighth.
+      // The part above half the height is an eighth.
       expect(cut.volume() / 175).toBeCloseTo(1, 2);
     }
   });

@@ -23,7 +23,7 @@ it('counts down within a move, and waits at its end', () => {
   expect(follower.follow(0, 0)).toBe(15);
   expect(follower.follow(1, 0)).toBe(15);
   expect(follower.follow(1, 4)).toBe(11);
-  expect(follower.follow(1, 60)).toBe(5); // slower than calculated: later moves are still to come
+  expect(follower.follow(1, 60)).toBe(5); // slower than calculated: later moves remain
   expect(follower.follow(2, 1)).toBe(4);
 });
 

@@ -68,7 +68,7 @@ export class Steps {
   make = (folder: string, answers: Answers): Promise<{ ini?: string; faults?: Fault[] }> => this.ask('/machine', { folder, answers });
   tryOut = (ini: string): Promise<{ is_good: boolean; output: string }> => this.ask('/trial', { ini });
   start = (ini: string): Promise<{ ini: string; port: number }> => this.ask('/start', { ini });
-  /** The first text of a socket for the steps at a machine. */
+  /** Builds the first message of a session, which opens the commissioning of a machine. */
   beginning = (ini: string): { key: string; ini: string } => ({ key: this.key, ini });
   picture = (ini: string): string => this.address('/picture', `&ini=${encodeURIComponent(ini)}`);
 }

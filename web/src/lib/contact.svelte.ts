@@ -9,7 +9,7 @@ const check = new ContactCheck();
 
 export const contact = $state<{ asked: Sensor | null; seen: Record<Sensor, boolean> }>({ asked: null, seen: { probe: false, setter: false } });
 
-/** Call it in an effect in every view, because no event that invalidates a contact may be missed. */
+/** Tracks events that invalidate a contact. Each view calls it in an effect, so that no event is missed. */
 export function followContact(): void {
   const { status } = machine;
   check.update(machine.isMachineUp && status !== null ? contactFacts(status) : null, contact.asked);

@@ -9,13 +9,13 @@ export interface Dismissable {
   at: number;
   /** Task's number of the message; 0 for a note, which has no number. */
   number: number;
-  /** Start of the machine that counts the messages; for a note, of the server. */
+  /** Identifies the start of the machine that numbers the messages; for a note, the start of the server. */
   run: string;
 }
 
 const KEY = 'millwright.dismissed';
 const MOST_KEPT = 200;
-/** The time of a note is calculated from its age when sent, which a slowly loading page reads late. */
+/** A note has an age instead of a time. A page that loads slowly receives it late, so its calculated time varies by up to this value. */
 const NOTE_MS = 2000;
 
 export class Dismissed {
@@ -40,7 +40,7 @@ export class Dismissed {
     try {
       this.storage?.setItem(KEY, JSON.stringify(this.kept));
     } catch {
-      // A browser without storage shows them again.
+      // Without browser storage, dismissed messages are shown again.
     }
   }
 

@@ -13,7 +13,7 @@ export interface Draft {
 
 export const draft = $state<{ now: Draft | null }>({ now: null });
 
-/** The editor has `text` for the program, whose file has `saved`. */
+/** Stores `text` from the editor for the program; `saved` is the content of its file. */
 export function keepDraft(name: string, text: string, saved: string): void {
   if (text !== saved) {
     draft.now = { name, text };

@@ -11,7 +11,7 @@ export interface Scale {
   min: number;
   max: number;
   step: number;
-  /** Change that a drag can make before it is deliberate, up or down. */
+  /** Change that is ignored until a drag is deliberate, up or down. */
   free: number;
   /** Travel of the knob on the track. [px] */
   width: number;

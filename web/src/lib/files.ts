@@ -47,7 +47,7 @@ export async function readFormer(name: string): Promise<string | null> {
 
 type FilterLine = { progress: number } | { made: string } | { error: string };
 
-/** Runs the filter of a file; returns the path of the program. Ends with the signal. */
+/** Runs the filter of a file and returns the path of the program. The signal aborts it. */
 export async function runFilter(name: string, tell: (percent: number) => void, signal: AbortSignal): Promise<string> {
   const answer = await fetch(`/api/filter?file=${encodeURIComponent(name)}`, { method: 'POST', signal });
   if (!answer.ok || answer.body === null) {

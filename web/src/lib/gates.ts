@@ -84,7 +84,7 @@ function atPower(status: MachineStatus): Gate {
 
 type Rule = (status: MachineStatus, facts: MachineFacts) => Gate;
 
-/** A gate from reach() and rules in order; the first closed rule is shown, because it must be fulfilled first. */
+/** Creates a gate from reach() and rules in order. The first closed rule is shown, because it must be fulfilled first. */
 function gate(...rules: Rule[]): (view: View) => Gate {
   return (view) => {
     const first = reach(view);
@@ -151,12 +151,12 @@ export const canRelease = gate(atPower, (status) => {
   const now = situation(status);
   return now === 'held' || now === 'proposed' ? null : { key: 'gate.not_held' };
 });
-/** A line after a running line waits. */
+/** A line entered while another line runs is queued. */
 export const canMdi = gate(atPower, isNotHoming, isHomed, (status) => {
   const now = situation(status);
   return now === 'line' && !status.task.is_paused ? null : closed(BUSY[now]);
 });
-/** Setting an offset needs the same as a line, and nothing may run before it. */
+/** An offset needs the same conditions as an MDI line, and no other command may be active. */
 export const canTouchOff = gate(atPower, isNotHoming, isHomed, isIdle);
 export const canEnergise = gate(atPower);
 export const canOverride = gate();

@@ -43,7 +43,7 @@ export interface ScopeRecord {
   moved: string[];
 }
 
-/** Names that this screen watches; they are kept while it shows another view. */
+/** Names that this screen watches. They stay watched while another view is shown. */
 export const watchList = $state<{ names: string[] }>({ names: [] });
 
 async function ask<T>(method: string, path: string, body?: object): Promise<T> {
@@ -71,10 +71,7 @@ export function matches(one: HalName, text: string): boolean {
   return text.toLowerCase().split(/\s+/).every((word) => whole.includes(word));
 }
 
-/**
- * With `pulseMs` the server restores the old value after that time, so a page that fails in between leaves
- * nothing set.
- */
+/** With `pulseMs` the server restores the old value after that time, so the value does not stay set if the page fails. */
 export const setHal = (name: string, value: string, pulseMs = 0): Promise<unknown> =>
   ask('PUT', `/api/hal/${encodeURIComponent(name)}`, pulseMs > 0 ? { value, pulse_ms: pulseMs } : { value });
 
@@ -84,7 +81,7 @@ export const endScope = (): Promise<{ state: ScopeState }> => ask('DELETE', '/ap
 export const forceScope = (): Promise<{ state: ScopeState }> => ask('POST', '/api/scope/force');
 export const scopeRecord = (): Promise<ScopeRecord> => ask('GET', '/api/scope/record');
 
-/** In the format of other programs: a header, then a line for each sample. */
+/** As comma-separated values: a header, then one line for each sample. */
 export function csvOf(record: ScopeRecord): string {
   const lines = [['time_s', ...record.names].join(',')];
   record.times_s.forEach((time, i) => lines.push([time, ...record.columns.map((column) => column[i] ?? '')].join(',')));

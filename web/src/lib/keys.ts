@@ -50,7 +50,7 @@ function onDown(event: KeyboardEvent, actions: KeyActions): boolean {
     return false;
   }
   if (document.querySelector('[role="dialog"]') !== null) {
-    return false; // while a question is shown, keys begin nothing else
+    return false; // while a dialog is open, keys start nothing else
   }
   const jog = JOG_KEYS[event.key];
   if (jog !== undefined && actions.areJogKeysOn()) {

@@ -39,7 +39,7 @@ export function confirmStart(): void {
   }
 }
 
-/** Called when the program has ended: its question is invalid, and the next program needs a new decision. */
+/** Called when the program has ended. The open question is then invalid, and the next program needs a new confirmation. */
 export function forgetStart(): void {
   keyStart.asked = null;
   keyStart.isStepping = false;

@@ -5,7 +5,7 @@ import { machine } from './machine.svelte';
 import { toolLength, type ToolLength } from './tool_length';
 import { tools } from './tools.svelte';
 
-/** null: status or tool table are not read yet. */
+/** null while the status or the tool table has not been read. */
 export function activeLength(): ToolLength | null {
   return machine.status === null || tools.version === -1 ? null : toolLength(machine.status, tools.list);
 }

@@ -15,7 +15,7 @@ export interface Command {
 
 export interface Message {
   number: number;
-  /** Start of the machine that counts the messages. */
+  /** Identifies the start of the machine that numbers the messages. */
   run: string;
   kind: 'OPERATOR_ERROR' | 'OPERATOR_TEXT' | 'OPERATOR_DISPLAY';
   text: string;
@@ -24,7 +24,7 @@ export interface Message {
 /** null: the name does not exist, or its number is not finite. */
 export type HalValue = number | boolean | null;
 
-/** A question of a HAL pin to the operator, or a text that is shown while the pin is set ('none'). */
+/** A question from a HAL pin to the operator, or a text that is shown while the pin is set ('none'). */
 export interface Question {
   id: string;
   number: number;
@@ -44,7 +44,7 @@ export interface Hello {
   session: string;
 }
 
-/** Events of the link; all calls come from the socket's events. */
+/** Events of the link. The socket's event handlers make all calls. */
 export interface LinkEvents {
   opened(hello: Hello): void;
   closed(): void;
@@ -136,7 +136,7 @@ export class Link {
     return this.options.now() - this.heardAt;
   }
 
-  /** Sends at once or not at all; nothing waits for a connection, so nothing arrives late. */
+  /** Sends immediately or fails. Commands are never queued for a later connection, so none arrives late. */
   post(command: Command, onStarted?: (outcome: Outcome) => void): Promise<Outcome> {
     if (!this.isOpen || this.socket === null) {
       return Promise.resolve({ progress: 'FAILED', reason: 'no connection to the machine: nothing was sent' });
@@ -147,7 +147,7 @@ export class Link {
     return new Promise((resolve) => this.pending.set(id, { done: resolve, started: onStarted }));
   }
 
-  /** HAL names whose values are sent on this connection from now on. */
+  /** Sets the HAL names whose values are sent on this connection. */
   look(names: readonly string[]): void {
     if (this.isOpen) {
       this.socket?.send(JSON.stringify({ watch: names }));

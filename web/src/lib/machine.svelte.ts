@@ -16,7 +16,7 @@ export interface Notice {
   at: Date;
   /** Task's number of the message; 0: none. */
   number: number;
-  /** Start of the machine that counts the messages; for a note, of the server. */
+  /** Identifies the start of the machine that numbers the messages; for a note, the start of the server. */
   run: string;
   isRead: boolean;
 }
@@ -81,7 +81,7 @@ export function whenLost(act: () => void): void {
 
 const onStatus: (() => void)[] = [];
 
-/** Waits until `isTrue` of a status that arrives from now on, at most `ms`. */
+/** Waits up to `ms` for a new status for which `isTrue` returns true. */
 export async function untilStatus(isTrue: (status: MachineStatus) => boolean, ms = 2000): Promise<void> {
   const deadline = performance.now() + ms;
   do {
@@ -118,7 +118,7 @@ export function dismissAll(): void {
   );
 }
 
-/** Adds a message that was received `ageMs` ago. A server sends earlier messages to a screen that connects. */
+/** Adds a message that was received `ageMs` ago. A screen that connects also receives earlier messages from the server. */
 export function tell(kind: Notice['kind'], text: string, ageMs = 0, number = 0, run = machine.session): void {
   const at = new Date(Date.now() - ageMs);
   const isKnown = notices.list.some((one) => one.text === text && Math.abs(at.getTime() - one.at.getTime()) < SAME_MS);

@@ -2,7 +2,7 @@
 // Steps of an override. Each touch is relative to the sum of the earlier touches, although the status follows
 // later.
 
-/** A request counts for this time after its command if the machine does not report it. [ms] */
+/** For this time [ms] after its command, a requested value is valid even if the machine does not report it. */
 const LATE_MS = 500;
 
 export interface NudgeRange {
@@ -34,7 +34,7 @@ export class Nudger {
     this.set(Math.min(Math.max(this.current(reported) + by, range.min), range.max));
   }
 
-  /** One command at a time; of the requests that arrive in this time the newest is sent. */
+  /** Sends one command at a time. Of the requests made in the meantime, only the newest is sent. */
   set(value: number): void {
     this.wanted = value;
     if (!this.isSending) {

@@ -34,7 +34,7 @@ function parseTerm(text: string): number | null {
   return isFraction ? first / second : null;
 }
 
-/** A sign before a term belongs to the sum; the second number of a fraction has no sign. */
+/** A sign before a term is part of the sum. The second number of a fraction has no sign. */
 const TERMS = /([+-]?)([^+-]+)/g;
 
 /** A whole number, a minus and a fraction, which is ambiguous: 3-1/8 may mean 3.125 or 2.875. */
@@ -78,7 +78,7 @@ export function parseWhole(text: string, least: number, most: number): number | 
   return value >= least && value <= most ? value : null;
 }
 
-/** Without the minus of a zero; a dash if there is no number. */
+/** Omits the minus sign of a zero. Returns a dash if there is no number. */
 export function formatNumber(value: number | null | undefined, decimals: number, separator = '.'): string {
   if (value === null || value === undefined || !Number.isFinite(value)) {
     return '-';

@@ -42,7 +42,7 @@ const pads = new PadJogger({
 
 whenJogsEnd(() => pads.noteEnd());
 
-/** For the time while the view is shown; returns the function that ends it. */
+/** Reads the pads while the view is shown. Returns the function that stops reading. */
 export function watchPad(): () => void {
   const look = (): void => {
     const all = (navigator.getGamepads?.() ?? []) as readonly (Pad | null)[];

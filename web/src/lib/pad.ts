@@ -15,13 +15,13 @@ export interface Pad {
 }
 
 export interface PadIo {
-  /** With the fraction of the jog speed, -1 to 1. */
+  /** `share` is a fraction of the jog speed, -1 to 1. */
   press(letter: string, share: number): void;
   change(letter: string, share: number): void;
   release(letter: string): void;
   /** True if a jog is possible. */
   isOpen(): boolean;
-  /** The jogs have ended although the operator did not release them. */
+  /** The jogs have ended although the operator did not release the stick. */
   ended(why: 'lost' | 'still'): void;
 }
 
@@ -54,7 +54,7 @@ export function sticksOf(kind: string, axes: string): StickAxis[] {
   return all.filter((one) => axes.includes(one.letter));
 }
 
-/** 0 within the dead zone; from its edge linear up to 1. */
+/** Returns 0 in the dead zone; from its edge it increases linearly to 1. */
 export function shareOf(value: number): number {
   const size = Math.abs(value);
   if (!(size > DEAD_ZONE)) {
@@ -119,7 +119,7 @@ export class PadJogger {
     this.isArmed = false;
   }
 
-  /** Called when the machine has ended a jog. */
+  /** Called when the machine has ended a jog without a release by the operator. */
   noteEnd(): void {
     this.held.clear();
     this.isArmed = false;

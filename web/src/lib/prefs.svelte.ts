@@ -10,7 +10,7 @@ export type Language = 'en' | 'de' | 'es';
 export type Unit = 'machine' | 'mm' | 'inch';
 
 export interface Preferences {
-  /** The value that colours the path. */
+  /** The quantity that determines the colour of the path. */
   colorBy: ColorBy;
   theme: Theme;
   language: Language;
@@ -47,7 +47,7 @@ function read(): Preferences {
     const kept = JSON.parse(localStorage.getItem(KEY) ?? '{}') as Partial<Preferences>;
     return { ...PRESETS, ...kept };
   } catch {
-    return { ...PRESETS }; // no storage, or no access: the presets
+    return { ...PRESETS }; // no storage, or access denied: use the defaults
   }
 }
 
@@ -97,6 +97,6 @@ export function keepPreferences(): void {
   try {
     localStorage.setItem(KEY, JSON.stringify(prefs));
   } catch {
-    // A browser without storage does not keep them.
+    // Without browser storage, the preferences are lost when the page is closed.
   }
 }

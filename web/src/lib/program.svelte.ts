@@ -2,7 +2,7 @@
 // The open program: its name in the folder of programs, when it must be read again, and its errors.
 import { machine } from './machine.svelte';
 
-/** `isPathUnderWay`: the page draws its path, which is not complete yet. */
+/** `isPathUnderWay`: the page is reading the path and has not drawn all of it. */
 export const program = $state<{ reads: number; errors: string[]; isPathUnderWay: boolean }>({ reads: 0, errors: [], isPathUnderWay: false });
 
 /** A name relative to a folder. */
@@ -37,7 +37,7 @@ export function shownName(): string {
   return openName() ?? path.slice(path.lastIndexOf('/') + 1);
 }
 
-/** Called when it was opened again: its text may have changed. */
+/** Called when the program was opened again, because its text may have changed. */
 export function reloadPath(): void {
   program.reads += 1;
 }

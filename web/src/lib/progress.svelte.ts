@@ -70,7 +70,7 @@ function read(file: string, feed: number, rapid: number, maxVelocity: number): v
   worker.postMessage(asked);
 }
 
-/** Call it in an effect: calculates the open program, again when the overrides have changed. */
+/** Call it in an effect. Calculates the times of the open program, again when the overrides change. */
 export function followTimes(): void {
   const name = machine.isConnected ? openName() : null;
   void program.reads;
@@ -85,7 +85,7 @@ export function followTimes(): void {
   }
   progress.isReading = true;
   if (isPathUnderWay) {
-    return; // the path comes first, because both share the processor
+    return; // the path is read first, because both need the processor
   }
   settling = setTimeout(() => read(name, feed, rapid, most), SETTLE_MS);
 }

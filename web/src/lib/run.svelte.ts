@@ -32,7 +32,7 @@ function count(program: string): void {
   try {
     sessionStorage.setItem(KEY, JSON.stringify({ session: machine.session, program, parts: run.parts } satisfies Counted));
   } catch {
-    // counted until the page is reloaded
+    // without storage, the count is lost on reload
   }
 }
 

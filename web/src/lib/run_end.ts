@@ -6,7 +6,7 @@ import type { MachineStatus } from './status';
 export type EndKind = 'finished' | 'stopped' | 'failed' | 'ended';
 
 export interface RunEnd {
-  /** `ended`: by its last line, or by a stop from another screen. */
+  /** `ended`: stopped at its last line or by another screen. */
   kind: EndKind;
   program: string;
   /** Line of the last move, 0 if none was executed. */
@@ -69,7 +69,7 @@ export class RunWatch {
     return hasEnded && !isRunning;
   }
 
-  /** The outcome of the start, from the page that has sent it. Returns true if it completes the program. */
+  /** Processes the outcome of the start command, which only the page that sent it receives. Returns true if the program is now complete. */
   outcome(progress: string): boolean {
     if (this.last?.isRunning === true) {
       this.early = progress;

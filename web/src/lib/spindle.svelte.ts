@@ -7,7 +7,7 @@ import { parseNumber } from './numbers';
 
 const typed = $state<Record<number, string>>({});
 
-/** The typed speed, else that of the INI file, else nothing. */
+/** The typed speed, or the speed of the INI file, or an empty text. */
 export function speedText(index: number): string {
   const proposed = machine.facts?.spindles[index]?.default_speed ?? 0;
   return typed[index] ?? (proposed > 0 ? String(proposed) : '');

@@ -172,7 +172,7 @@ export interface MachineFacts {
   instance: string;
   axes: string;
   kind: 'mill' | 'lathe' | 'back_lathe' | 'foam';
-  /** [DISPLAY]GEOMETRY: position of a pose in the picture. */
+  /** [DISPLAY]GEOMETRY: the order of translations and rotations in the picture. */
   geometry: string;
   /** Heights at which the planes of a foam cutter are drawn. */
   foam_z: number;
@@ -189,7 +189,7 @@ export interface MachineFacts {
   increments: { text: string; value: number; angular: boolean }[];
   mdi_commands: string[];
   program_extensions: string[];
-  /** Extensions of files that a program of [FILTER] converts; its programs are in the folder. */
+  /** Extensions of the files that a program of [FILTER] converts; the programs that it creates are in filtered_folder. */
   filter_extensions: string[];
   filtered_folder: string;
   max_feed_override: number;

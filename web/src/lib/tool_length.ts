@@ -3,7 +3,7 @@
 import { AXIS_LETTERS, type MachineStatus } from './status';
 import type { Tool } from './tools.svelte';
 
-/** G49, a tool of the table, or values that no tool has: from G43.1, G43.2, or from a table that has changed since. */
+/** G49, a tool of the table, or values that match no tool (set by G43.1, G43.2 or a later change of the table). */
 export type LengthOwner = { kind: 'none' } | { kind: 'tool'; toolno: number } | { kind: 'other' };
 
 export interface ToolLength {

@@ -24,7 +24,7 @@ export function forgetWhy(): void {
   why.gate = null;
 }
 
-/** Acts if the gate is open, else shows the reason. */
+/** Calls `act` if the gate is open, otherwise shows the reason. */
 export function through(gate: Gate, what: string, act: () => unknown): void {
   if (gate === null) {
     forgetWhy();

@@ -8,7 +8,7 @@ import { canRestore, goLine, isIncremental, restoreLine, zeroLine, zeroSet, type
 
 /** Time for which Undo is offered after the last zero. */
 const OFFERED_MS = 60_000;
-/** The status with the new offsets comes after the outcome of the command. */
+/** The status with the new offsets arrives after the outcome of the command. */
 const STATUS_MS = 1000;
 
 /** `done`: newest last. */
@@ -25,14 +25,14 @@ function offsetsNow(): Offsets | null {
   return machine.status === null ? null : (JSON.parse(JSON.stringify(machine.status.offsets)) as Offsets);
 }
 
-/** The zero that Undo restores now. */
+/** The zero that Undo restores. */
 export function lastZero(): ZeroSet | null {
   const last = zeros.done[zeros.done.length - 1];
   const offsets = machine.status?.offsets;
   return last !== undefined && offsets !== undefined && canRestore(last, offsets) ? last : null;
 }
 
-/** True if the position that becomes zero, or from which a move starts, is the one shown to the operator. */
+/** True if the shown position is the current one, because zero is set at it or a move starts from it. */
 export function canZero(): Gate {
   const old = machine.silentSeconds ?? machine.staleSeconds;
   if (old !== null) {
@@ -42,7 +42,7 @@ export function canZero(): Gate {
   return canTouchOff(view()) ?? (zeros.isBusy ? { key: 'gate.busy' } : isMoving ? { key: 'gate.moving' } : null);
 }
 
-/** A move to zero also needs homed joints if programs do not need them, and G90. */
+/** A move to zero also needs G90, and homed joints even if programs do not need them. */
 export function canGoToZero(): Gate {
   const status = machine.status;
   const gate = canZero();

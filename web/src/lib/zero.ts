@@ -12,7 +12,7 @@ export interface ZeroSet {
   after: number[];
 }
 
-/** Offsets that differ by less are caused by the conversion between inches and millimetres. */
+/** Tolerance for conversions between inches and millimetres. */
 const TOLERANCE = 1e-6;
 /** Digits of a restored offset: more than the machine resolves, and no exponent. */
 const DIGITS = 9;

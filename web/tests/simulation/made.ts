@@ -22,7 +22,7 @@ export function movesOf(points: readonly Point[], first_tool = 1): Moves {
       moves.take({ kind: 'ranges', first: Uint32Array.of(i), feed: Float32Array.of(10), tool: Uint32Array.of(tool) });
     }
     const isFirst = i === 0;
-    // Each chunk begins with the last point of the previous one.
+    // Each chunk begins with the last point of the previous chunk.
     const all = isFirst ? [point] : [point, point];
     moves.take({
       kind: 'moves',

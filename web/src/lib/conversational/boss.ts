@@ -14,10 +14,7 @@ export interface Boss {
   stock: Point;
 }
 
-/**
- * Paths of the tool's centre, the outermost first: at equal distances from the boss, and never far outside of
- * the stock.
- */
+/** Paths of the tool centre at equal distances from the boss, the outermost first. No path is far outside the stock. */
 export function bossRings(boss: Boss, diameter: number, stepOver: number, inset: number): Ring[] {
   const radius = diameter / 2;
   const first = radius + inset;

@@ -4,7 +4,7 @@
 import type { Point, Segment } from './path2';
 import type { Unit } from './types';
 
-/** A sequence of connected segments of one layer, as drawn. `bad`: the name of an entity that cannot be cut. */
+/** A sequence of connected segments of one layer, as drawn. `bad` is the name of an entity that cannot be cut. */
 export interface Entity {
   layer: string;
   start: Point;

@@ -49,7 +49,7 @@ export function size(id: string, mm: number | ((values: Values, context: Context
   ];
   return field(id, 'length', preset, base, more);
 }
-/** A length of zero or more. */
+/** A field for a length of zero or more. */
 export function margin(id: string, preset: Preset, more: More = {}): NumberField {
   return field(id, 'length', preset, (_, context) => [{ low: 0, key: 'fault.not_negative' }, { high: longest(context.unit), key: 'fault.at_most', values: { high: longest(context.unit) } }], more);
 }
@@ -74,7 +74,7 @@ export function choice(id: string, options: string[], preset = options[0] ?? '',
   return { id, kind: 'choice', options, preset, ...more };
 }
 
-/** Number and diameter of the tool, spindle and feeds: first in each form. */
+/** The first fields of each form: number and diameter of the tool, spindle and feeds. */
 export function toolFields(mm = 6, inch = 0.25, speed = 3000): Field[] {
   const inTable: Limits = (values, context) => (context.tools !== null && !context.tools.some((one) => one.number === num(values, 'tool')) ? [{ high: -1, key: 'fault.no_tool', values: { tool: num(values, 'tool') } }] : []);
   return [
@@ -116,7 +116,7 @@ export function stepDown(): NumberField {
     limits: (values) => [{ high: num(values, 'depth'), key: 'fault.step_depth', values: { high: num(values, 'depth') } }, { low: num(values, 'depth') / 1000, key: 'fault.too_many_steps' }],
   });
 }
-/** Above this fraction of the diameter, material remains in the corners between two paths. */
+/** With a larger fraction of the diameter, material remains in the corners between two paths. */
 export const MOST_STEP = 0.7;
 export function stepOver(most = MOST_STEP): NumberField {
   return size('step_over', (values, context) => 0.4 * num(values, 'diameter') || nice(context.unit, 2, 0.1), 0.1, {
@@ -142,9 +142,9 @@ export function entryFields(): Field[] {
     angle('ramp_angle', 3, 0.5, 30, { reason: 'why.ramp_angle', isShown: (values) => word(values, 'entry') !== 'plunge' }),
   ];
 }
-/** A program of more lines is slow to read and to show, and usually caused by a typing error. */
+/** A longer program is slow to read and to show, and is usually caused by a typing error. */
 export const MOST_LINES = 100_000;
-/** The fault of an operation of about this many lines, at the field that can reduce them. */
+/** The fault of an operation with about this many lines, reported at the field that can reduce them. */
 export function lengthFault(lines: number, field: string): Faults {
   return lines > MOST_LINES ? { [field]: { key: 'fault.long_program', values: { high: MOST_LINES } } } : {};
 }

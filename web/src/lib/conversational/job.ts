@@ -50,7 +50,7 @@ export function contextOf(job: Job, facts: MachineFacts): Context {
 const NAME = /^[\p{L}\p{N}][\p{L}\p{N} _.+-]*$/u;
 const MOST_NAME = 60;
 
-/** Faults of the program's own fields. */
+/** Faults of the fields that concern the whole program. */
 export function jobFaults(job: Job): Faults {
   const faults: Faults = {};
   if (!NAME.test(job.name) || job.name.length > MOST_NAME) {

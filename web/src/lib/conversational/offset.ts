@@ -109,7 +109,7 @@ function isTurned(before: Piece, after: { from: Point; segment: Segment }): bool
   return distance(after.from, after.segment.to) > 1e-9 && lengthOf(after.from, after.segment) > lengthOf(before.from, before.segment) + 1e-6;
 }
 
-/** Intersection of two shifted segments, or of their extensions, nearest to the corner. */
+/** The intersection of two shifted segments, or of their extensions, that is nearest to the corner. */
 function meet(a: { from: Point; segment: Segment }, b: { from: Point; segment: Segment }, corner: Point): Point | null {
   const found =
     a.segment.kind === 'line'

@@ -91,7 +91,7 @@ export function reversed(path: Path): Path {
   return { start: endOf(path), segments: segments.reverse() };
 }
 
-/** If the ends of an arc were moved slightly, its centre is moved to equal distances from both. */
+/** If the ends of an arc were moved slightly, moves its centre so that both ends have the same radius. */
 export function refitted(path: Path): Path {
   let from = path.start;
   const segments = path.segments.map((one): Segment => {

@@ -79,7 +79,7 @@ export function holesOf(values: Values): Point[] {
 /** The field to be changed if two holes overlap. */
 const SPACING: Record<string, string> = { circle: 'holes', line: 'spacing', grid: 'spacing_x', list: 'points' };
 
-/** True if holes of this diameter overlap; touching is permitted. */
+/** Returns a fault if holes of this diameter overlap; holes may touch. */
 export function overlapFault(values: Values, diameter: number): Faults {
   const points = holesOf(values);
   const order = points.map((_, i) => i).sort((a, b) => (points[a] as Point).x - (points[b] as Point).x);

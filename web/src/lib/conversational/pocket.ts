@@ -30,7 +30,7 @@ function lying(pocket: Pocket): Pocket {
   return pocket.x >= pocket.y ? pocket : { ...pocket, x: pocket.y, y: pocket.x, frame: { ...pocket.frame, turn: pocket.frame.turn + Math.PI / 2 } };
 }
 
-/** The possible entries of the tool into solid material; null: only with a plunge. */
+/** The possible entries of the tool into solid material; null if only a plunge is possible. */
 function entryOf(pocket: Pocket, diameter: number, allowance: number, isPlunging: boolean): Entry | null {
   if (isPlunging) {
     return { kind: 'plunge' };

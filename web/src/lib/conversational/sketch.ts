@@ -204,7 +204,7 @@ const SKETCHES: Record<string, (d: Draft, v: Values, context: Context) => void> 
   ...LATHE_SKETCHES,
 };
 
-/** Invalid numbers, and sizes of zero or less, are drawn with their defaults. */
+/** Invalid numbers and sizes of zero or less are replaced by their defaults for the drawing. */
 function drawable(operation: Operation, values: Values, context: Context): Values {
   const usable = Object.fromEntries(
     operation.fields

@@ -9,7 +9,7 @@ const DATA = ';@ ';
 /** Characters of a line; interpreters read at least 255. */
 const WIDTH = 100;
 
-/** 53 bits of the text, as hexadecimal digits. It detects changes, but is no protection. */
+/** A 53-bit checksum of the text in hexadecimal digits. It detects changes but does not protect against forgery. */
 export function checksum(text: string): string {
   let [a, b] = [0xdeadbeef, 0x41c6ce57];
   for (let i = 0; i < text.length; i += 1) {
@@ -38,10 +38,7 @@ export function withForm(program: string, job: Job): string {
 
 export type Opened = { kind: 'none' } | { kind: 'broken' } | { kind: 'newer' } | { kind: 'edited'; job: Job } | { kind: 'same'; job: Job };
 
-/**
- * `none`: not a program of these forms. `broken`: its forms cannot be read. `edited`: the G-code is not that
- * of the forms.
- */
+/** `none`: not a program of these forms. `broken`: the stored form values cannot be read. `edited`: the G-code was changed by hand. */
 export function openForm(text: string): Opened {
   const lines = text.replace(/\r\n?/g, '\n').split('\n');
   const at = lines.findIndex((one) => one.startsWith(MARK));

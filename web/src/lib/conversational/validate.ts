@@ -27,7 +27,7 @@ function numberFault(field: NumberField, values: Values, context: Context): Faul
   return null;
 }
 
-/** Values of a message have the digits of the field. */
+/** Rounds the values of a message to the digits of the field. */
 function rounded(values: Record<string, string | number>): Record<string, string | number> {
   return Object.fromEntries(Object.entries(values).map(([key, value]) => [key, typeof value === 'number' ? Math.round(value * 1e5) / 1e5 : value]));
 }
@@ -43,7 +43,7 @@ function fieldFault(field: Field, values: Values, context: Context): Fault | nul
   return numberFault(field, values, context);
 }
 
-/** Faults of a value that are independent of other fields. Fields that depend on this value are then not rejected. */
+/** Faults of a value that are independent of other fields. A field that depends on this value is then not checked. */
 const ALONE = new Set<string>(['fault.number', 'fault.whole', 'fault.above_zero', 'fault.not_negative', 'fault.at_least', 'fault.at_most', 'fault.top_safe', 'fault.part_stock', 'fault.bore_hole', 'fault.z_order', 'fault.hole_gap']);
 
 function eachFault(operation: Operation, values: Values, context: Context): Faults {

@@ -10,7 +10,7 @@ export interface Position {
   z?: number;
 }
 
-/** Resolution: neighbouring points of a program are at least one last digit apart. */
+/** Decimal digits of coordinates. Neighbouring points of a program differ by at least one last digit. */
 export function digitsOf(unit: Unit): number {
   return unit === 'mm' ? 4 : 5;
 }
@@ -37,7 +37,7 @@ export interface TracePoint {
 }
 const MOST_TRACE = 20_000;
 const TRACE_STEP = Math.PI / 12;
-/** In units of the last digit. */
+/** In units of the last decimal digit. */
 const LEAST_RADIUS = 20;
 
 export class Writer {
@@ -106,10 +106,10 @@ export class Writer {
     const isSame = this.number(to.x) === this.at.x && this.number(to.y) === this.at.y;
     const isCircle = Math.hypot(to.x - this.here.x, to.y - this.here.y) < TINY;
     if (isSame && !isCircle) {
-      return; // shorter than the last digit; written, it would be a full circle
+      return; // the arc is shorter than the last digit and would be read as a full circle
     }
     if (Math.hypot(to.x - centre.x, to.y - centre.y) < LEAST_RADIUS * 10 ** -this.digits) {
-      this.feed(to, rate); // after rounding its radius would differ at both ends
+      this.feed(to, rate); // after rounding, the arc would have different radii at its ends
       return;
     }
     const words = [isCw ? 'G2' : 'G3', `X${this.number(to.x)}`, `Y${this.number(to.y)}`];

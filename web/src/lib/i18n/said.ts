@@ -10,9 +10,9 @@ interface Pattern {
 }
 
 const MAX_DEPTH = 5; // maximum nesting of texts
-const MAX_LOOKUPS = 2000; // for one message: a message of unknown words with many colons has too many parts
+const MAX_LOOKUPS = 2000; // Limit for one message, because a message of unknown words with many colons has too many parts.
 const countWords = (pieces: string[]): number => pieces.reduce((sum, piece) => sum + (piece.match(/[A-Za-z]{2,}/g) ?? []).length, 0);
-// A value of one word is a name or a number, because a signal may be called "error".
+// A value of one word is treated as a name or a number, because a signal may be called "error".
 const hasSeveralWords = (text: string): boolean => text.includes(' ') && (text.match(/[A-Za-z]/g) ?? []).length > 2;
 
 /** The texts between the pieces in `text`; null if `text` does not consist of the pieces in this order. */
@@ -62,7 +62,7 @@ export class Texts {
   private line(text: string): string {
     if (text.startsWith('  ')) {
       const caller = text.startsWith('  called from ') ? this.find(text.slice(2), 0) : null;
-      return caller === null ? text : `  ${caller}`; // lines of a program are not changed
+      return caller === null ? text : `  ${caller}`; // lines of a program are not translated
     }
     this.left = MAX_LOOKUPS;
     return this.composed(text, 0) ?? text;
@@ -88,7 +88,7 @@ export class Texts {
 
   private isFitting(pattern: Pattern, values: string[], depth: number): boolean {
     if (pattern.pieces[0] === '' && values[0]?.includes(': ')) {
-      // a position, type or sentence with a colon at the beginning is a separate part, not a value
+      // a position, type or sentence that ends with a colon at the beginning is a separate part, not a value
       return false;
     }
     return !pattern.isName || values.every((value) => !value.includes(' ') || (depth < MAX_DEPTH && this.composed(value, depth + 1) !== null));

@@ -201,7 +201,7 @@ export class ChunkReader {
   }
 }
 
-/** Fills its own buffer; null if the stream ends before. */
+/** Fills the buffer of the reader; returns null if the stream ends before that. */
 async function fill(reader: ReadableStreamBYOBReader, size: number): Promise<ArrayBuffer | null> {
   let buffer = new ArrayBuffer(size);
   let at = 0;
@@ -219,7 +219,7 @@ async function fill(reader: ReadableStreamBYOBReader, size: number): Promise<Arr
   return buffer;
 }
 
-/** Reading into our own buffers leaves no garbage. */
+/** Reads into preallocated buffers, so that reading leaves no garbage. */
 async function* readInto(reader: ReadableStreamBYOBReader): AsyncGenerator<Chunk> {
   for (;;) {
     const head = await fill(reader, HEAD_BYTES);

@@ -67,7 +67,7 @@ const FRAGMENT = `
 const NUMBERS: Record<ColorBy, number> = { kind: 0, feed: 1, tool: 2, speed: 1 };
 const NAMES = ['rapid', 'feed', 'arc', 'probe', 'current', 'background'] as const;
 
-/** For the path, and in paler colours for the other ends of a foam cutter's wire. */
+/** Materials for the path, and in paler colours for the other end of a foam cutter's wire. */
 export class PathMaterials {
   readonly path: ShaderMaterial;
   readonly wire: ShaderMaterial;

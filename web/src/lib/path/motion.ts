@@ -9,7 +9,7 @@ const LONG_MS = 28;
 const SHORT_MS = 18;
 const FEWEST = 1500;
 
-/** Pairs of points in another order, always the same. */
+/** The pairs of points in a different, fixed order. */
 export function shuffled(pairs: Moves): Moves {
   const count = pairs.count / 2;
   const order = Uint32Array.from({ length: count }, (_, i) => i);

@@ -58,7 +58,7 @@ const TIP_SHARE = 1 / 12;
 interface Piece {
   /** Number of its first point. */
   first: number;
-  /** It is the other end of a foam cutter's wire. */
+  /** True for the path of the other end of a foam cutter's wire. */
   isWire: boolean;
   whole: Line;
   fine: Line | null;
@@ -151,7 +151,8 @@ export class PathScene {
     this.draw();
   }
 
-  /** The first point is the end of the previous moves. `isWire`: the other end of the same moves, which come first. */
+  /** The first point is the end of the previous moves. `isWire`: the same moves at the other end of the wire, added after
+   * those of the tool. */
   addMoves(moves: Moves, isWire = false): void {
     const whole = makeLine(moves, this.materialOf(isWire));
     const first = isWire ? this.points - moves.count : Math.max(this.points - 1, 0);
@@ -226,7 +227,7 @@ export class PathScene {
     this.draw();
   }
 
-  /** Colours by these values from now on; without values by the type of moves. */
+  /** Colours the path by these values; without values, by the type of moves. */
   async setColoring(by: ColorBy, ranges: Ranges | null, shading: Shading): Promise<void> {
     this.materials.colorBy(ranges === null ? 'kind' : by);
     if (ranges !== null) {
@@ -274,10 +275,7 @@ export class PathScene {
     this.limits.visible = false;
   }
 
-  /**
-   * Position of the controlled point, with the trail of earlier positions. `other`: the end of a foam
-   * cutter's wire.
-   */
+  /** Sets the position of the controlled point, with a trail of earlier positions. `other`: the other end of a foam cutter's wire. */
   setTool(spot: Spot, isCutting: boolean, other: Spot | null = null): void {
     const [x, y, z] = spot;
     const { position } = this.tool;
@@ -300,7 +298,7 @@ export class PathScene {
     this.noteMotion();
   }
 
-  /** From now on draws the tool of a lathe; null: the spindle is empty. */
+  /** Draws the tool of a lathe; null: the spindle is empty. */
   setLatheTool(tip: LatheTip | null): void {
     this.isLatheTool = true;
     this.tip = tip;
@@ -469,7 +467,7 @@ export class PathScene {
     }
   }
 
-  /** Measured from the previous frame, or from the request of this frame if nothing was drawn in between. */
+  /** The time is measured from the previous frame, or from the request of this frame if nothing was drawn in between. */
   private judgeFrame(): void {
     const now = performance.now();
     const took = now - Math.max(this.lastFrameAt, this.askedAt - FRAME_MS);

@@ -10,7 +10,7 @@ const RAPID = 0;
 const PROBE = 3;
 const MOST_SHADE = 255;
 
-/** Values along a path, each from a point on, with increasing points. Grows while the path is read. */
+/** Values along a path. Each value applies from a point to the next; the points increase. The list grows while the path is read. */
 export class Ranges {
   private firsts = new Uint32Array(64);
   private values = new Float32Array(64);
@@ -83,7 +83,7 @@ export class Ranges {
 /** Shade of a value: 0 to 255. */
 export type Shading = (value: number) => number;
 
-/** Along a scale from slow to fast. */
+/** Returns a shading from slow to fast. */
 export function gradient(extent: { low: number; high: number } | null): Shading {
   const [low, high] = [extent?.low ?? 0, extent?.high ?? 0];
   const span = high - low;
@@ -112,7 +112,7 @@ export function shade(moves: Moves, first: number, ranges: Ranges, shading: Shad
   }
 }
 
-/** Moves without a feed keep their own colour independent of other moves. */
+/** Moves without a feed have a fixed colour. */
 export function hasOwnColor(kind: number): boolean {
   return kind === RAPID || kind === PROBE;
 }

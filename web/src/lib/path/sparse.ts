@@ -6,7 +6,7 @@ import type { Moves } from './chunks';
 
 const SPAN = 1 << 16;
 
-/** Pairs of points, each a piece of the path in a cell that is still empty. `seen` is shared by all chunks. */
+/** Returns pairs of points, one for each cell that contains a piece of the path. `seen` contains the cells of all chunks. */
 export function sparse(moves: Moves, cell: number, seen: Set<number>): Moves {
   const { places, lines, kinds, shades, count } = moves;
   const kept: number[] = [];

@@ -2,7 +2,7 @@
 // A path with fewer points that has the same appearance from a distance, for use while it is rotated.
 import type { Moves } from './chunks';
 
-/** If more than this fraction of the points remain, a reduced copy is not made. */
+/** No reduced copy is made if more than this fraction of the points remains. */
 const WORTH_A_COPY = 0.5;
 
 /**

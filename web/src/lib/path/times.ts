@@ -69,7 +69,7 @@ export class Times {
     return sum;
   }
 
-  /** The next move of a line, beginning with one; -1: there is none. */
+  /** The next move of a line, starting at move `from`; -1 if there is none. */
   next(line: number, from: number): number {
     const found = this.lines.subarray(0, this.count).indexOf(line, from);
     return found;
@@ -97,7 +97,7 @@ export class Follower {
     }
     if (this.hasBegun) {
       this.within += seconds;
-      // Consecutive moves of one line cannot be distinguished.
+      // Consecutive moves of one line have the same line number, so their durations determine the current move.
       while (this.within > times.duration(this.move) && times.line(this.move + 1) === line && this.move + 1 < times.count) {
         this.within -= times.duration(this.move);
         this.move += 1;

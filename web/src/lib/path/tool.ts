@@ -12,7 +12,7 @@ export interface LatheTip {
   backangle_deg: number;
 }
 
-/** From the centre of the nose to the controlled point, in radii along Z and X, by orientation. */
+/** Offset from the centre of the nose to the controlled point, in radii along Z and X, by orientation. */
 const SHIFTS: readonly (readonly [number, number])[] = [[0, 0], [1, -1], [-1, -1], [-1, 1], [1, 1], [1, 0], [0, -1], [-1, 0], [0, 1], [0, 0]];
 /** Half angle of the body if its edges have no angles; it points away from the controlled point. */
 const WIDE_DEG = 40;
@@ -81,11 +81,11 @@ export function tipGeometry(tip: LatheTip, length: number): BufferGeometry {
   const shape = new Shape();
   tipOutline(tip, length).forEach(([z, x], i) => (i === 0 ? shape.moveTo(x, z) : shape.lineTo(x, z)));
   const geometry = new ShapeGeometry(shape);
-  geometry.rotateX(Math.PI / 2); // x, z of the shape, which has them as x and y
+  geometry.rotateX(Math.PI / 2); // converts x, y of the shape to x, z
   return geometry;
 }
 
-/** Between the two ends of the tool of a foam cutter. */
+/** The wire between the two ends of a foam cutter's tool. */
 export function makeWire(): Line {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(6), 3));

@@ -71,10 +71,7 @@ export class Checkpoints {
     return this.moves[checkpoint] ?? 0;
   }
 
-  /**
-   * Restores the field at a checkpoint. `shown`: the current checkpoint; tiles that have not changed between
-   * the two are kept.
-   */
+  /** Restores the field at a checkpoint. `shown`: the current checkpoint. Tiles that are the same in both are not copied. */
   restore(checkpoint: number, shown: number): void {
     const { field } = this;
     for (let tile = 0; tile < this.versions.length; ++tile) {

@@ -44,7 +44,7 @@ export class Findings {
     known.fixture ||= found.fixture;
   }
 
-  /** In the order of the program. */
+  /** The findings in the order of the program. */
   list(): Finding[] {
     return [...this.by_line.values()].sort((a, b) => a.move - b.move || a.part - b.part);
   }

@@ -39,7 +39,7 @@ export class Moves {
   readonly tools: ToolRange[] = [];
   /** The program is longer than the stored part. */
   isCut = false;
-  /** Points of the server before each jump. */
+  /** Server point numbers before each jump. */
   private readonly jumps: number[] = [];
   private served = 0;
   private offsets: { first: number; xyz: [number, number, number] }[] = [];

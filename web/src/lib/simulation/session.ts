@@ -71,7 +71,7 @@ export class Session {
     return false;
   }
 
-  /** Null if another preparation has begun, or it was cancelled. */
+  /** Returns null if another preparation has begun, or if it was cancelled. */
   async prepare(setup: Setup, pause: () => Promise<void>, report: (part: number) => void): Promise<Prepared | null> {
     const mine = ++this.preparations;
     this.isPrepared = false;
@@ -104,7 +104,7 @@ export class Session {
     this.preparations += 1;
   }
 
-  /** No effect before it is prepared. */
+  /** Has no effect until the program is prepared. */
   show(at: Position, most: number): Shown | null {
     const { simulation, display, clock, moves } = this;
     if (simulation === null || display === null || clock === null || !this.isPrepared) {

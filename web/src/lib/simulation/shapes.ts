@@ -82,7 +82,7 @@ const WORDS: readonly [RegExp, ShapeName][] = [
   [/\bv\b|v-?bit|vee|engrav|gravier|grabad|chamfer|fase|chafl[aá]n/i, 'vee'],
 ];
 
-/** From the data of the tool table: the shape is a guess from the comment, which the operator can correct. */
+/** Guesses the shape from the comment in the tool table. The operator can correct it. */
 export function guessShape(diameter_mm: number, comment: string): ToolShape {
   const shape = WORDS.find(([words]) => words.test(comment))?.[1] ?? 'flat';
   const angle = Number(/(\d{2,3}(?:\.\d+)?)\s*(?:°|deg|grad)/i.exec(comment)?.[1] ?? NaN);

@@ -127,10 +127,7 @@ export class Simulation {
     return false;
   }
 
-  /**
-   * Shows the field after `wanted` moves; a fraction is a part of the next move. Call it when everything is
-   * prepared.
-   */
+  /** Shows the field after `wanted` moves, including a fraction of the next move. Call it only when all moves are prepared. */
   goTo(wanted: number): void {
     const target = Math.min(Math.max(wanted, 0), this.moveCount);
     const checkpoint = this.checkpoints.before(Math.floor(target));

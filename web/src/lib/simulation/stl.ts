@@ -37,12 +37,10 @@ function readText(bytes: ArrayBuffer): Float32Array | null {
   return numbers.length > 0 && numbers.length % 9 === 0 ? Float32Array.from(numbers) : null;
 }
 
-/**
- * In the coordinates of the file, which are work coordinates; `unit_mm`: millimetres of its unit. Null if it
- * is not an STL file, has too many triangles, or no volume.
- */
+/** Reads a mesh in work coordinates; `unit_mm`: length of the file's unit in mm. Null if it is not an STL file, has too many triangles,
+ * or no volume. */
 export function readStl(bytes: ArrayBuffer, unit_mm: number): Stock | null {
-  // A text file begins with `solid`. Some binary files also begin so; their length matches their count.
+  // A text file begins with `solid`. Some binary files also do, so the length is compared with the number of triangles.
   const words = new DataView(bytes);
   const isBinary = bytes.byteLength >= HEAD_BYTES && bytes.byteLength === HEAD_BYTES + words.getUint32(80, true) * TRIANGLE_BYTES;
   const triangles = isBinary ? readBinary(bytes) : (readText(bytes) ?? readBinary(bytes));

@@ -27,7 +27,7 @@ export interface Contact {
 
 /** Contacts below this depth are ignored, because arcs are chords and numbers have 24 bits. [mm] */
 export const CONTACT_MM = 0.02;
-/** At the lowest point the height is level, so an error of the position causes a much smaller error of the height. */
+/** The height is level at the lowest point, so an error of the position causes a much smaller error of the height. */
 const BISECTIONS = 14;
 
 /** One move over a field. The object is used for all moves, so that moves do not allocate memory. */
@@ -46,10 +46,8 @@ export class Sweep {
 
   constructor(private readonly field: Field) {}
 
-  /**
-   * `isContinued`: the same tool has already cut at the start of the move. `maker` 0: cuts nothing.
-   * `watches`: finds the deepest contact; contacts below CONTACT_MM are ignored.
-   */
+  /** `isContinued`: the same tool has already cut at the start of the move. `maker` 0: no material is removed. `watches`: finds the
+   * deepest contact; contacts below CONTACT_MM are ignored. */
   run(move: Segment, cutter: Cutter, maker: number, isContinued: boolean, watches: boolean): void {
     const { field, contact } = this;
     contact.depth = 0;
@@ -275,10 +273,7 @@ export class Sweep {
     return kind === CONE ? slope * beyond : corner - Math.sqrt(Math.max(0, corner * corner - beyond * beyond));
   }
 
-  /**
-   * Position of the tool relative to the foot of a cell on the move when it cuts the cell lowest, without the
-   * ends of the move.
-   */
+  /** Position along the move (relative to the foot of the cell) at which the tool cuts this cell lowest, without the ends of the move. */
   private lowest(square: number, width: number): number {
     const { rise, cutter } = this;
     if (rise === 0) {

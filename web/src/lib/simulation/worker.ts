@@ -15,7 +15,7 @@ function tell(news: News, moved: ArrayBufferLike[] = []): void {
   postMessage(news, { transfer: moved as ArrayBuffer[] });
 }
 
-/** Lets waiting messages in; a timer would wait for milliseconds. */
+/** Processes waiting messages. A timer would wait for milliseconds. */
 function pause(): Promise<void> {
   return new Promise((done) => {
     const { port1, port2 } = new MessageChannel();
@@ -31,7 +31,7 @@ const TOO_MANY = 429;
 const TRIES = 15;
 const RETRY_MS = 1000;
 
-/** The server reads only a few programs at a time, so this request waits for those of other views or screens. */
+/** The server reads only a few programs at a time, so this request waits until programs of other views or screens are read. */
 async function fetchBody(address: string, signal: AbortSignal): Promise<ReadableStream<Uint8Array>> {
   let answer = await fetch(address, { signal });
   for (let tries = 1; answer.status === TOO_MANY && tries < TRIES; ++tries) {
@@ -129,7 +129,7 @@ function fail(of: number, error: unknown): void {
 addEventListener('message', (event: MessageEvent<Order>) => {
   const order = event.data;
   if (order.kind === 'show') {
-    // A restart of the machine must not be lost when the next position arrives.
+    // The next position must not hide a restart of the machine.
     const isNew = wanted !== null && 'machine' in wanted.at && wanted.at.machine.isNew;
     wanted = isNew && 'machine' in order.at ? { ...order, at: { machine: { ...order.at.machine, isNew } } } : order;
     void show();

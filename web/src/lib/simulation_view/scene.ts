@@ -37,7 +37,7 @@ export class SimulationScene {
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera(-100, 100, 100, -100, -1e5, 1e5);
   private readonly controls: OrbitControls;
-  /** Drawn during motion, and when everything is still. */
+  /** Drawn during motion (coarse) and at standstill (fine). */
   private readonly coarse = new Surface();
   private readonly fine = new Surface();
   private hasFine = false;
@@ -102,7 +102,7 @@ export class SimulationScene {
     this.draw();
   }
 
-  /** Outlines until there is a picture of it. */
+  /** Shows outlines until a picture of the stock is available. */
   setStock(stock: Stock, fixtures: readonly Fixture[], floor_mm: number): void {
     const isFirst = this.stock === null;
     this.stock = stock;
@@ -227,7 +227,7 @@ export class SimulationScene {
     this.coarse.mesh.visible = !isFine;
   }
 
-  /** The camera moves; the fine surface returns when it is still. */
+  /** The camera moves. The fine surface is drawn again when it stops. */
   private noteMotion(): void {
     if (this.hasFine) {
       this.choose(false);

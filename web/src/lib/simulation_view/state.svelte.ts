@@ -100,10 +100,8 @@ function isSupported(): boolean {
   return facts?.kind === 'mill' && isPlain(facts.geometry, facts.axes);
 }
 
-/**
- * Call it in an effect while the view is open: reads the open program, and again when it, the offsets or the
- * tools have changed.
- */
+/** Call it in an effect while the view is open. Reads the open program, and reads it again when the program, the offsets or the tools
+ * change. */
 export function followProgram(): void {
   const name = machine.isConnected ? openName() : null;
   const active = activeFrame();
@@ -177,7 +175,7 @@ function hear(event: MessageEvent<News>): void {
   }
 }
 
-/** The end of a program that has not been shown. */
+/** Returns the end of the program if it has not been shown. */
 function placeNow(): number {
   const isSame = place !== null && place.file === openName() && place.moves === simulation.facts?.moves;
   return isSame ? (place?.at ?? 0) : Number.MAX_SAFE_INTEGER;
@@ -196,7 +194,7 @@ function begin(facts: Facts): void {
   prepare();
 }
 
-/** With the current stock and shapes. */
+/** Prepares the simulation with the current stock and shapes. */
 export function prepare(): void {
   const { stock, facts } = simulation;
   if (stock === null || facts === null) {
@@ -248,7 +246,7 @@ export function setCells(moving: number, still: number): void {
 let stillTimer: ReturnType<typeof setTimeout> | undefined;
 const STILL_AFTER_MS = 250;
 
-/** Shows a point of the program: coarsely while it changes, finely when it is still. */
+/** Shows a point of the program: coarsely while the point changes, finely when it stops. */
 export function show(at: Position, isInMotion: boolean): void {
   if (simulation.phase !== 'ready') {
     return;

@@ -35,7 +35,7 @@ const VERTEX = `
     vPlace = vec3(corner + at, z);
     vHeight = z;
     vSide = isRing ? 1.0 : 0.0;
-    // Of the surface around the cell: the steps of a slanted wall do not show as stripes.
+    // The slope of the surface around the cell, so that the steps of a slanted wall are not visible as stripes.
     vec2 slope = vec2(heightOf(inside - ivec2(1, 0)) - heightOf(inside + ivec2(1, 0)), heightOf(inside - ivec2(0, 1)) - heightOf(inside + ivec2(0, 1))) / (2.0 * size);
     vNormal = vec3(slope, 1.0);
     gl_Position = projectionMatrix * modelViewMatrix * vec4(vPlace, 1.0);
@@ -67,7 +67,7 @@ const FRAGMENT = `
     ivec2 cell = clamp(ivec2((vPlace.xy - corner) / size), ivec2(0), ivec2(cells) - 1);
     int maker = makerOf(cell);
     if (maker == 0 && vHeight < top - 0.001 * (top - bottom)) {
-      // A wall belongs to the tool that has cut the lower side of it.
+      // A wall is coloured for the tool that has cut its lower side.
       maker = max(max(makerOf(cell + ivec2(1, 0)), makerOf(cell - ivec2(1, 0))), max(makerOf(cell + ivec2(0, 1)), makerOf(cell - ivec2(0, 1))));
     }
     if (vSide > 0.01) { maker = 0; }

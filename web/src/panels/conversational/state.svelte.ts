@@ -20,7 +20,7 @@ export interface FormState {
   selected: number;
   /** The file from which the values were read or to which they were written; null: none yet. */
   file: string | null;
-  /** Checksum of its text at that time: a file that was changed since is only replaced after a question. */
+  /** Checksum of its text at that time. A file changed since is replaced only after confirmation. */
   sum: string;
   isChanged: boolean;
   nextId: number;
@@ -42,7 +42,7 @@ function kept(): FormState | null {
     const isGood = value !== null && value.job.version === 1 && typeof value.job.name === 'string' && typeof value.job.safe === 'string' && Array.isArray(value.job.steps) && value.job.steps.every((one) => operationOf(one.type) !== null && typeof one.texts === 'object');
     return isGood && value.job.machine === machineKind() ? value : null;
   } catch {
-    return null; // of an older page, or no access
+    return null; // from an older page, or access denied
   }
 }
 
@@ -52,7 +52,7 @@ export function keep(): void {
   try {
     localStorage.setItem(KEY, JSON.stringify(form));
   } catch {
-    // Full or no access: the values are kept until the page is reloaded.
+    // Storage is full or access is denied: the values are kept until the page is reloaded.
   }
 }
 

@@ -55,7 +55,7 @@ function roundOf(values: Values): Boss {
   return { frame: { x: num(values, 'x'), y: num(values, 'y'), turn: 0 }, x: radius, y: radius, corner: radius, stock: { x: num(values, 'stock_length') / 2, y: num(values, 'stock_width') / 2 } };
 }
 
-/** Checks that there is material to cut, and not too much. */
+/** Checks that there is material to cut, and that the program does not become too long. */
 function check(values: Values, boss: Boss): Faults {
   const isSame = boss.corner < 1e-6 && Math.abs(boss.stock.x - boss.x) < 1e-6 && Math.abs(boss.stock.y - boss.y) < 1e-6;
   const rings = Math.hypot(boss.stock.x, boss.stock.y) / num(values, 'step_over');

@@ -131,7 +131,7 @@ export const latheFace: Operation = {
   write(writer, values) {
     const [feed, clear] = [num(values, 'feed_rev'), num(values, 'clearance')];
     const out = num(values, 'stock_diameter') + 2 * clear;
-    // At the centre the nose radius passes it; a shoulder is not cut.
+    // Without a shoulder the tool moves past the centre by the nose radius.
     const end = num(values, 'end_diameter') > 0 ? num(values, 'end_diameter') : -2 * num(values, 'nose');
     const allowance = num(values, 'allowance');
     const depths = cutsOf(faceDepth(values) - allowance, num(values, 'cut'));
@@ -275,7 +275,7 @@ export const chamfer: Operation = {
   fields: cornerFields('chamfer'),
   write(writer, values) {
     const [edge, z, clear, feed] = [num(values, 'part_diameter'), num(values, 'z_start'), num(values, 'clearance'), num(values, 'feed_rev')];
-    // Material that the nose leaves beside a line of 45 degrees through the tip.
+    // Material that the nose radius leaves beside a 45 degree line through the tip.
     const total = num(values, 'chamfer') + (2 - Math.SQRT2) * num(values, 'nose');
     for (const c of cutsOf(total, num(values, 'cut'))) {
       writer.rapid({ z: z + clear });

@@ -73,7 +73,7 @@ function write(writer: Writer, values: Values, context: Context): void {
     writer.feed({ z: helix.from }, feed);
     const edge = { x: x + radius, y };
     const lead = { x: x + (away + radius) / 2, y };
-    // Half a circle from the middle, or from outside, which joins the helix without a corner.
+    // Lead-in and lead-out are half circles, from the middle or from outside, tangential to the helix.
     const isLeadCw = isIn ? isCw : !isCw;
     writer.arc(edge, lead, isLeadCw, feed);
     writer.arc({ ...edge, z: helix.to }, { x, y }, isCw, feed, turns);
