@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Tests access from another computer: token, TLS, roles, and the option that disables the protection (J3).
-// Each cell of the table in docs/reference/api.md that a browser can request.
+// Tests access from another computer: token, TLS, roles, and the option that disables the protection (J3). Covers all cells of the table in
+// docs/reference/api.md that a browser can request.
 import { request as httpsRequest } from 'node:https';
 import { request as httpRequest } from 'node:http';
 import type { Page } from 'playwright-core';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The material simulation in the screen: a planted rapid in the stock is found with its line, the slider moves the cut, the picture follows
-// the machine. With MW_SCREEN_PICTURES pictures of it are taken.
+// Tests the material simulation in the screen: a rapid move in the stock is reported with its line, the slider selects the shown move, and
+// the picture follows the machine. MW_SCREEN_PICTURES saves pictures.
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';
 import { afterAll, beforeAll, expect, it, onTestFailed } from 'vitest';

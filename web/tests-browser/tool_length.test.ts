@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Tests whose tool length is active, and its effect on a touch off; a spindle without an encoder; a machine
-// without a probe.
+// Tests the active tool length and its effect on a touch off, a spindle without an encoder, and a machine without a probe.
 import type { Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
 import { bringUp, errorsOf, judgeByAxe, Rig, showFailure, sleep, text, until, untilText } from './rig';

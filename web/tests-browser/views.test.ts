@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Tests every view in every size, light and dark: axe-core finds nothing, nothing exceeds the picture, and
-// the stops can be touched. With MW_SCREEN_PICTURES the pictures of docs/user/screen.md are taken from the
-// running program.
+// Tests every view in every size, light and dark: axe-core reports no fault, nothing exceeds the window, and the stops can be touched.
+// MW_SCREEN_PICTURES saves the pictures of docs/user/screen.md from the running program.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Page } from 'playwright-core';

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Tests jogs with a gamepad: only while its button is pressed, starting with a centred stick, and never
-// restarting by themselves.
+// Tests jogs with a gamepad: they start only with the enable button pressed and a centred stick, and never restart by themselves.
 import { beforeEach, expect, it } from 'vitest';
 import { DEAD_ZONE, PadJogger, shareOf, STILL_MS, sticksOf, type Pad } from '../src/lib/pad';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cost of a servo cycle of the controller, and of planning dense programs.
+// Costs of a servo cycle of the controller, and of planning dense programs.
 #include <cmath>
 
 #include <benchmark/benchmark.h>
@@ -9,7 +9,7 @@
 namespace mw::motion {
 namespace {
 
-/// One servo cycle of three joints, at rest and on a path of one long line.
+/// One servo cycle of three joints, at standstill and on one long line.
 void BM_servo_cycle(benchmark::State &state) {
     testing::MotionRig rig;
     rig.ready();
@@ -36,7 +36,8 @@ void BM_servo_cycle(benchmark::State &state) {
 }
 BENCHMARK(BM_servo_cycle)->Arg(0)->Arg(1);
 
-/// A surface of short lines at about 5000 blocks per second of virtual time: whole cost per virtual second.
+/// A surface of short lines at about 5000 blocks per second of virtual time. Measures the whole cost per
+/// virtual second.
 void BM_dense_program(benchmark::State &state) {
     for (auto _ : state) {
         state.PauseTiming();

@@ -127,7 +127,7 @@ std::uint32_t ModuleHoming::take_clamped() noexcept {
     return now;
 }
 
-/// Command and feedback have different zeros: the encoder has reset itself.
+/// Command and feedback have different zeros, because the encoder has reset itself.
 bool ModuleHoming::isAtIndex(int joint) const noexcept {
     return functions_.get_homing_at_index_search_wait(joint) && !functions_.get_index_enable(joint);
 }
@@ -198,7 +198,7 @@ void ModuleHoming::take_offset(int joint, const homing::JointInput &in, bool was
         !functions_.get_homing_at_index_search_wait(joint) && isHoming(joint)) {
         out.isSettingZero = true;
         out.zero = -offset;
-        begun_ &= ~(1U << joint);  // its new position is valid in the next cycle
+        begun_ &= ~(1U << joint);  // the new position is valid from the next cycle
     } else if (offset != in.motor_offset) {
         out.isShifting = true;
         out.shift = in.motor_offset - offset;
@@ -215,7 +215,7 @@ void ModuleHoming::take_move(int joint, const homing::JointInput &in, homing::Jo
     const homing::Parameters &p = parameters_[at(joint)];
     const std::uint32_t bit = 1U << joint;
     if (tp.enable == 0 || tp.max_vel <= 0 || !isHoming(joint)) {
-        out.move = homing::Move::STOP;  // no effect on a joint that is stopped; the next command replaces it
+        out.move = homing::Move::STOP;  // no effect on a stopped joint; the next command replaces it
         driven_ &= ~bit;
         return;
     }

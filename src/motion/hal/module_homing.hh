@@ -86,7 +86,7 @@ class ModuleHoming final : public homing::Module {
     int num_joints_ = 0;
     std::uint32_t configured_ = 0, driven_ = 0, unlock_ = 0, unlocked_ = 0;  ///< bit per joint
     std::uint32_t clamped_ = 0, told_ = 0;
-    std::uint32_t begun_ = 0;  ///< bit per joint whose start is in `origin_`
+    std::uint32_t begun_ = 0;  ///< bit per joint whose start position is in `origin_`
     std::array<double, MAX_JOINTS> origin_{};
     bool isCancelled_ = true;  ///< the module's commands have no effect until homing starts
 };

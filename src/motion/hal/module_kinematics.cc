@@ -54,8 +54,8 @@ const char *ModuleKinematics::find(int num_joints) noexcept {
     if (is_switchable != nullptr && is_switchable() != 0) {
         types_.switch_it = find_function<decltype(&kinematicsSwitch)>("kinematicsSwitch");
     }
-    // Only a module that declares the identity has joints that are axes: crossed axes look the same at single
-    // joints.
+    // Only a module that declares the identity has joints that are axes, because crossed axes look the same
+    // when single joints are tested.
     const auto is_identity = find_function<int (*)()>("mw_kinematics_is_identity");
     const bool isSaid = kind_ == kinematics::Kind::IDENTITY || (is_identity != nullptr && is_identity() != 0);
     if (isSaid) {
@@ -68,12 +68,12 @@ int ModuleKinematics::hold(int comp_id) const noexcept {
     return mw_ext_use_module("kinematicsInverse", comp_id);
 }
 
-/// Finds the axis of each joint from the inverse of unit poses. Values other than 0 and 1 are no identity,
-/// even if the module declares one.
+/// Finds the axis of each joint from the inverse of unit poses. Values other than 0 and 1 are not an
+/// identity, even if the module declares one.
 void ModuleKinematics::find_axes(int num_joints) noexcept {
     double zero[MAX_JOINTS];
     for (double &x : zero) {
-        x = NAN;  // values that the module does not set stay NaN
+        x = NAN;  // values that the module does not set remain NaN
     }
     EmcPose origin = to_c({});
     isIdentity_ = inverse_(&origin, zero, &inverse_flags_, &forward_flags_) == 0;
@@ -124,7 +124,7 @@ kinematics::Status ModuleKinematics::forward(const double *joints, kinematics::P
 }
 
 kinematics::Status ModuleKinematics::inverse(const kinematics::Pose &pose, double *joints) const noexcept {
-    double found[MAX_JOINTS] = {};  // a module may fill more than the machine has
+    double found[MAX_JOINTS] = {};  // a module may set more joints than the machine has
     for (int j = 0; j < num_joints_; ++j) {
         found[j] = joints[j];
     }

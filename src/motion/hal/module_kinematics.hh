@@ -7,7 +7,7 @@
 
 namespace mw::motion {
 
-/// The types of a module, through its own function.
+/// The kinematics types of a module, switched by the module's function.
 class ModuleTypes final : public kinematics::TypeSwitch {
   public:
     decltype(&kinematicsSwitch) switch_it = nullptr;
@@ -35,7 +35,7 @@ class ModuleKinematics final : public kinematics::Kinematics {
     kinematics::TypeSwitch *type_switch() const noexcept override {
         return types_.switch_it != nullptr ? &types_ : nullptr;
     }
-    /// Modules declare it by exporting mw_kinematics_is_pure.
+    /// A module declares this by exporting mw_kinematics_is_pure.
     bool isShareable() const noexcept override { return isIdentity_ || isPure_; }
 
   private:

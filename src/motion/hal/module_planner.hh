@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speeds from a user's planner module, through the C functions of planner.h.
+// Speeds from a user's planner module, requested with the C functions of planner.h.
 #pragma once
 
 #include "hal/include/planner.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every pin of the motion controller, declared once, by the names of the manual page motion(9). The pins of
-// motmod.9, what is made in HAL and what is copied each servo cycle follow from here.
+// Declares every pin of the motion controller once, with the names of the manual page motion(9). motmod.9,
+// the pins created in HAL and the values copied in each servo cycle are generated from these tables.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ struct AxisInputs {
     WheelInput &wheel;
     OffsetInput &offset;
 };
-/// One input or output of many.
+/// One input or output of several channels.
 struct ChannelIn {
     Inputs &in;
     int number = 0;
@@ -44,7 +44,7 @@ using Count = std::int32_t;
 
 constexpr double PER_MINUTE = 60.0, MM_PER_INCH = 25.4;
 
-/// [units/min] of the cut under way.
+/// Feed of the executed cut [units/min].
 inline double feed_upm(const Status &s) noexcept {
     const bool isFeed = s.motion_type == MotionType::FEED || s.motion_type == MotionType::ARC;
     return isFeed && !s.isPaused ? s.requested_velocity * s.net_feed_scale * PER_MINUTE : 0.0;
@@ -127,8 +127,8 @@ inline constexpr auto JOINT = pin_table("joint.#",
     out<double>("f-error-lim", "unit", "following error that is allowed now", [](const JointView &v) { return v.o.ferror_limit; }),
     out<double>("free-pos-cmd", "unit", "target of a jog or homing move", [](const JointView &v) { return v.o.free_pos_cmd; }));
 
-/// Written only when one of its values changes, as all tables SELDOM_*. Pins that enable amplifiers are written in
-/// every cycle.
+/// Written only when one of its values has changed, as all tables SELDOM_*. Pins that enable amplifiers are
+/// written in every cycle.
 inline constexpr auto SELDOM_JOINT = pin_table("joint.#",
     out<double>("motor-offset", "unit", "from joint to motor, set by homing", [](const JointView &v) { return v.o.motor_offset; }),
     out<double>("backlash-corr", "unit", "backlash to compensate", [](const JointView &v) { return v.o.backlash_raw; }),
@@ -146,7 +146,7 @@ inline constexpr auto SELDOM_JOINT = pin_table("joint.#",
     out<bool>("kb-jog-active", "", "jogged by command", [](const JointView &v) { return v.o.isKeyboardJogging; }),
     out<bool>("wheel-jog-active", "", "jogged by wheel", [](const JointView &v) { return v.o.isWheelJogging; }));
 
-/// Unless a homing module makes its own.
+/// Not present if a homing module creates its own pins.
 inline constexpr auto HOMING = pin_table("joint.#",
     in<bool>("home-sw-in", "", "home switch", [](JointInputs &i, bool v) { i.isHomeSwitchClosed = v; }),
     in_out<bool>("index-enable", "", "homing waits for the index pulse; the encoder clears it there", [](JointInputs &i, bool v) { i.isIndexEnabled = v; }, [](const JointView &v) { return v.o.isIndexEnabled; }));
@@ -156,7 +156,7 @@ inline constexpr auto SELDOM_HOMING = pin_table("joint.#",
     out<bool>("homing", "", "the joint is being homed", [](const JointView &v) { return v.s.isHoming; }),
     out<Count>("home-state", "", "step of homing, 0: none", [](const JointView &v) { return v.o.home_state; }));
 
-/// Only of joints in the unlock mask.
+/// Only for joints in the unlock mask.
 inline constexpr auto SWITCHABLE = pin_table("motion",
     in<double>("switchkins-type", "", "type of switchable kinematics; change it at standstill only", [](Inputs &i, double v) { i.kinematics_type = v; }));
 

@@ -14,7 +14,7 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Makes one set for each number below `count` that is in `mask`; ends at the first failure.
+/// Creates one set of pins for each number below `count` that is in `mask`; stops at the first failure.
 template <class Set, std::size_t SIZE>
 int declare_each(Set (&sets)[SIZE], int comp_id, int count, unsigned mask = ~0U) noexcept {
     int status = 0;
@@ -25,7 +25,7 @@ int declare_each(Set (&sets)[SIZE], int comp_id, int count, unsigned mask = ~0U)
     return status;
 }
 
-/// Copies the words of `part` to the last values; true if they differ. Every cycle does this for every joint.
+/// Copies `part` to the last values; returns true if they differ. Called for every joint in every cycle.
 template <std::size_t WORDS>
 bool replace(std::array<std::uint64_t, WORDS> &shown, const void *part) noexcept {
     const auto *from = static_cast<const unsigned char *>(part);
@@ -69,7 +69,8 @@ int MotionPins::declare(int comp_id, const PinCounts &wanted) noexcept {
     return status == 0 ? declare_each(spindle_, comp_id, counts_.spindles) : status;
 }
 
-/// Pins that seldom exist are read apart: a taken branch is not predicted once per cycle.
+/// Pins that are rarely present are read in separate functions, because each taken branch costs one
+/// misprediction per cycle.
 void MotionPins::read(Inputs &in) noexcept {
     in.time_ns = rtapi_get_time();
     in.lost_positions = __atomic_load_n(lost_positions_, __ATOMIC_RELAXED);
@@ -113,7 +114,7 @@ void MotionPins::read(Inputs &in) noexcept {
     }
 }
 
-/// True when a pin may have its value at another address than in the last cycle.
+/// True if the value of a pin may have another address than in the last cycle.
 bool MotionPins::areLinksOther() noexcept {
     const std::uint32_t links = __atomic_load_n(links_, __ATOMIC_ACQUIRE);
     const bool areOther = links != last_links_ || axes_ != last_axes_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The HAL pins of the motion controller: one set of each table in motion/hal/pin_tables.hh, for the joints,
-// axes and spindles of the machine.
+// The HAL pins of the motion controller, declared in motion/hal/pin_tables.hh: one set of each table for each
+// joint, axis and spindle of the machine.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct PinCounts {
 /// Is in HAL memory.
 class MotionPins {
   public:
-    /// Makes the pins; 0 or a negated errno. [while loading]
+    /// Creates the pins. Returns 0 or a negated errno. [while loading]
     int declare(int comp_id, const PinCounts &wanted) noexcept;
     /// [servo]
     [[gnu::hot]] void read(Inputs &in) noexcept;
@@ -41,13 +41,13 @@ class MotionPins {
     template <std::size_t BYTES>
         requires(BYTES % 8 == 0)
     using Shown = std::array<std::uint64_t, BYTES / 8>;
-    static constexpr std::size_t FLAGS = offsetof(JointStatus, isActive);  ///< from there to the end
+    static constexpr std::size_t FLAGS = offsetof(JointStatus, isActive);  ///< from here to the end
 
     bool areLinksOther() noexcept;
 
     PinCounts counts_;
     std::uint32_t axes_ = ALL_AXES;                  ///< as Outputs::axes
-    const std::uint32_t *links_ = nullptr;           ///< count of pin links of HAL
+    const std::uint32_t *links_ = nullptr;           ///< HAL's count of pin connections
     const std::uint32_t *lost_positions_ = nullptr;  ///< as Inputs::lost_positions
     std::uint32_t last_links_ = 0;
     std::uint32_t last_axes_ = 0;  ///< 0: all are written in the first cycle

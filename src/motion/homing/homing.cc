@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Sequences and single cycles; team.cc has the common motion of joints.
+// Sequences and single cycles of homing. team.cc moves joints together.
 #include "motion/homing/homing.hh"
 
 #include <cmath>
@@ -53,7 +53,7 @@ void Homing::start(int joint) noexcept {
     sequence_ = start_sequence(0) ? 0 : start_sequence(1) ? 1 : -1;
 }
 
-/// Begins all joints of a sequence number; false when there are none.
+/// Starts all joints of a sequence number; false if there are none.
 bool Homing::start_sequence(int number) noexcept {
     bool isAny = false;
     for (int k = 0; k < num_joints_; ++k) {
@@ -97,7 +97,7 @@ void Homing::lock() noexcept {
     }
 }
 
-/// One joint fails: all homing stops.
+/// Reports the failure of a joint and stops all homing.
 void Homing::fail(int joint, Failure why) noexcept {
     failed_joint_ = joint;
     failure_ = why;
@@ -122,7 +122,7 @@ int Homing::take_failure(Failure &why) noexcept {
     return joint;
 }
 
-/// The row of the table that applies now, nullptr without a change.
+/// The matching row of the table; nullptr if nothing changes.
 const Transition *Homing::transition(int joint, std::uint32_t events) const noexcept {
     const State state = at(joint).state;
     const std::uint32_t settings = settings_of(joint);
@@ -161,7 +161,7 @@ void Homing::step(const JointInput *inputs, JointCommand *commands) noexcept {
             commands[k] = {};
             commands[k].move = Move::STOP;
             commands[k].acceleration = j.team_acceleration;
-            // The position is no zero, but the reset must not move the motor.
+            // This position is not the zero, but the encoder reset must not move the motor.
             commands[k].isSettingZero = j.isIndexReleased && !inputs[k].isIndexEnabled;
             commands[k].zero = j.parameters.offset;
             j.isStopping = false;
@@ -193,7 +193,7 @@ std::uint32_t Homing::events_of(int joint, const JointInput *inputs) const noexc
     const JointInput &in = inputs[joint];
     std::uint32_t out = in.isSwitchClosed ? event::SWITCH_CLOSED : event::SWITCH_OPEN;
     out |= in.isAtRest ? event::AT_REST : 0U;
-    // The pin was set TRUE in the last cycle and is low now: the encoder has cleared it, and may have reset
+    // The pin was TRUE in the last cycle and is FALSE now. The encoder has cleared it and may have reset
     // itself.
     out |= j.isIndexWanted && !in.isIndexEnabled ? event::INDEX : 0U;
     out |= in.isUnlocked ? 0U : event::LOCKED;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Homing: the table of `table.hh` for each joint, in sequences, groups that end together, and teams that move
-// one axis. Pure, realtime-safe. Behaviour as in LinuxCNC's integrator manual, "Homing Configuration".
+// one axis. Pure and realtime-safe. It behaves as LinuxCNC's integrator manual describes in "Homing
+// Configuration".
 #pragma once
 
 #include <array>
@@ -24,9 +25,9 @@ class Homing final : public Module {
     Parameters &parameters(int joint) noexcept { return at(joint).parameters; }
     const Parameters &parameters(int joint) const noexcept { return at(joint).parameters; }
 
-    /// One joint: with its group, if its sequence is negative.
+    /// Homes one joint; also its group if its sequence is negative.
     void start(int joint) noexcept override;
-    /// Positions found until now are not used.
+    /// Positions found so far are not used.
     void abort(event::Event why = event::ABORT, int joint = -1) noexcept override;
     void unhome(int joint) noexcept override { at(joint).isHomed = false; }
     void step(const JointInput *inputs, JointCommand *commands) noexcept override;
@@ -39,10 +40,10 @@ class Homing final : public Module {
     struct Summary {
         bool isCurrent = false;
         bool isAnyHoming = false, isAnyBusy = false;
-        bool isQuiet = true;      ///< no joint has a command and no step is shown
+        bool isQuiet = true;      ///< no joint is commanded and no step is reported
         std::uint32_t homed = 0;  ///< bit per joint
     };
-    /// Of all joints; calculated again when any joint may have changed.
+    /// Summary of all joints, recalculated when a joint may have changed.
     const Summary &summary() const noexcept {
         if (!summary_.isCurrent) [[unlikely]] {
             summarise();
@@ -60,7 +61,7 @@ class Homing final : public Module {
 
     /// Maximum time of an indexer to unlock or lock [s].
     static constexpr double LONGEST_LOCKING_S = 30;
-    /// Maximum time that a contact bounces [s]; it is evaluated again after this time.
+    /// Maximum duration of contact bounce [s]; the contact is read again after this time.
     static constexpr double LONGEST_BOUNCE_S = 0.02;
 
   private:
@@ -70,10 +71,10 @@ class Homing final : public Module {
         bool isHomed = false;
         bool isIndexWanted = false, isUnlockWanted = false, isStopping = false;
         bool isIndexReleased =
-            false;              ///< in this cycle, by a failure: the encoder may just have reset itself
+            false;              ///< set in this cycle by a failure: the encoder may just have reset itself
         int wait = 0;           ///< cycles in this state
         double way = 0;         ///< travel commanded since homing began; setting the zero does not change it
-        double closed_way = 0;  ///< `way` where its switch was closed last
+        double closed_way = 0;  ///< `way` at which its switch was last closed
         double team_acceleration = 0;  ///< 0: its own
     };
     /// Limits and command of a team.
@@ -111,7 +112,7 @@ class Homing final : public Module {
     mutable Summary summary_;
     int num_joints_ = 0;
     double period_s_ = 1e-3;
-    int sequence_ = -1;  ///< being homed by "all", -1: none
+    int sequence_ = -1;  ///< sequence that "home all" executes, -1: none
     int failed_joint_ = -1;
     Failure failure_ = Failure::NONE;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The interface of homing to motion: `Homing`, or a user's module in its place.
+// The interface between motion and homing: `Homing`, or a user's module instead.
 #pragma once
 
 #include <cstdint>
@@ -48,13 +48,13 @@ enum class Move : std::uint8_t { NONE, STOP, BY, TO };
 /// Command to one joint in this cycle. Motion keeps it within the limits of the joint.
 struct JointCommand {
     Move move = Move::NONE;
-    double value = 0;          ///< BY: signed distance; TO: position, after the shift
+    double value = 0;          ///< BY: signed distance; TO: position after the shift
     double velocity = 0;       ///< > 0; 0: maximum of the joint
     double most_velocity = 0;  ///< limit of the override; 0: maximum of the joint
     double acceleration = 0;   ///< 0: maximum of the joint
-    double jerk = 0;           ///< of moves that only end at their target; 0: maximum of the joint
+    double jerk = 0;           ///< of moves that end only at their target; 0: maximum of the joint
     bool isSmooth = false;     ///< such a move
-    bool isShifting = false;   ///< positions and target all move by `shift`; the motor stays
+    bool isShifting = false;   ///< position and target change by `shift`; the motor does not move
     double shift = 0;
     bool isSettingZero =
         false;  ///< the encoder has just been reset: motor position 0 is joint position `zero`
@@ -72,7 +72,7 @@ class Module {
     virtual void abort(event::Event why, int joint) noexcept = 0;
     virtual void unhome(int joint) noexcept = 0;
 
-    /// In every cycle, on or off: first and last.
+    /// Called first and last in every cycle, also while the machine is off.
     virtual void read_pins() noexcept {}
     virtual void write_pins() noexcept {}
 
@@ -84,17 +84,17 @@ class Module {
     virtual bool isActive() const noexcept = 0;
     /// True if `step` has work: homing is active, or a joint still has to be stopped.
     virtual bool hasWork() const noexcept = 0;
-    /// For diagnostics: 0 is none.
+    /// The homing step for diagnostics; 0: none.
     virtual int step_number(int joint) const noexcept = 0;
-    /// The index-enable pin; and whether the joint is moving towards the index pulse.
+    /// True while the index-enable pin is set. Also reports whether the joint moves towards the index pulse.
     virtual bool isIndexWanted(int joint) const noexcept = 0;
     virtual bool isAtIndex(int joint) const noexcept = 0;
     virtual bool isUnlockWanted(int joint) const noexcept = 0;
-    /// The failure since the last call: joint or -1.
+    /// The failure since the last call: its joint, or -1.
     virtual int take_failure(Failure &why) noexcept = 0;
     /// Bit per joint whose command was clamped to its limits since the last call.
     virtual std::uint32_t take_clamped() noexcept { return 0; }
-    /// Outputs that depend on machine on are off from here.
+    /// From this call on, outputs that require machine on are off.
     virtual void lock() noexcept = 0;
 
   protected:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Homing of a joint as one table: the next state for each event in each state. docs/integrator/homing.md
-// shows it.
+// prints the table.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@ enum class State : std::uint8_t {
     IDLE,
     UNLOCK,  ///< requests a locking indexer to unlock
     START,
-    INITIAL_BACKOFF,  ///< off a switch that was closed at the start
+    INITIAL_BACKOFF,  ///< moves off a switch that was closed at the start
     INITIAL_BACKOFF_STOP,
     SEARCH,  ///< towards the switch
     SEARCH_STOP,
-    LATCH_BACKOFF,  ///< off the switch, for a slow approach
+    LATCH_BACKOFF,  ///< moves off the switch to approach it slowly
     LATCH_BACKOFF_STOP,
-    LATCH,    ///< slowly to the edge of the switch
-    INDEX,    ///< slowly to the index pulse
-    LATCHED,  ///< has its zero and moves with its team until all joints of the team have theirs
+    LATCH,    ///< moves slowly to the edge of the switch
+    INDEX,    ///< moves slowly to the index pulse
+    LATCHED,  ///< has its zero; moves with its team until each joint of the team has its zero
     LATCHED_STOP,
-    WAIT_FOR_GROUP,  ///< synchronised joints wait for one another before the final move
+    WAIT_FOR_GROUP,  ///< waits until all synchronised joints are ready for the final move
     FINAL,
     LOCK,  ///< requests a locking indexer to lock
     COUNT,
 };
-/// In the table: every state but IDLE.
+/// In the table it stands for every state but IDLE.
 inline constexpr State UNDER_WAY = State::COUNT;
 
 enum class Failure : std::uint8_t {
@@ -37,8 +37,8 @@ enum class Failure : std::uint8_t {
     SHARED_SWITCH_CLOSED,
     SWITCH_NOT_FOUND,
     SWITCH_STUCK,         ///< backing off did not open the switch
-    SWITCH_LOST,          ///< found, but open again after stopping
-    SWITCH_CLOSED_AGAIN,  ///< left, but closed again after stopping
+    SWITCH_LOST,          ///< found, but open after the stop
+    SWITCH_CLOSED_AGAIN,  ///< left, but closed again after the stop
     INDEX_NOT_FOUND,
     LIMIT_HIT,
     ABORTED,
@@ -46,25 +46,25 @@ enum class Failure : std::uint8_t {
     TEAM_SKEWED,   ///< the difference between them would exceed the maximum
     NOT_UNLOCKED,
     NOT_LOCKED,
-    INHIBITED,        ///< after the command and before the start
+    INHIBITED,        ///< inhibited after the command and before the start
     MODULE_FAILED,    ///< a user's module has reported a failure
-    MODULE_NONSENSE,  ///< it commanded a value that is not a finite number
+    MODULE_NONSENSE,  ///< a module commanded a value that is not a finite number
 };
 
-/// Events of a cycle, as bits. A joint without a team is a team by itself.
+/// Events of a cycle, as bits. A joint without a team counts as its own team.
 namespace event {
 enum Event : std::uint32_t {
     BEGIN = 1U << 0,
     SWITCH_CLOSED = 1U << 1,
     SWITCH_OPEN = 1U << 2,
     TEAM_CLOSED = 1U << 3,  ///< a switch of the team is closed
-    TEAM_OPEN = 1U << 4,    ///< all of its switches are open
+    TEAM_OPEN = 1U << 4,    ///< all switches of the team are open
     INDEX = 1U << 5,
     AT_REST = 1U << 6,
-    TEAM_AT_REST = 1U << 7,  ///< all of its joints are stopped, in one state
+    TEAM_AT_REST = 1U << 7,  ///< all joints of the team are stopped in one state
     TEAM_LATCHED = 1U << 8,
-    GROUP_READY = 1U << 9,     ///< all joints that end together have their zero
-    TEAM_UNLOCKED = 1U << 10,  ///< all of its indexers are unlocked
+    GROUP_READY = 1U << 9,     ///< all joints that end together have found their zero
+    TEAM_UNLOCKED = 1U << 10,  ///< all indexers of the team are unlocked
     LOCKED = 1U << 11,
     OVERDUE = 1U << 12,  ///< waited too long
     TEAM_DIFFERS = 1U << 13,
@@ -73,7 +73,7 @@ enum Event : std::uint32_t {
     ABORT = 1U << 16,
     OFF = 1U << 17,
     MEMBER_FAILED = 1U << 18,  ///< another joint that is being homed has failed
-    TEAM_SETTLED = 1U << 19,   ///< TEAM_AT_REST, and no contact is bouncing
+    TEAM_SETTLED = 1U << 19,   ///< TEAM_AT_REST, and no contact bounces
 };
 }
 
@@ -83,7 +83,9 @@ enum Setting : std::uint32_t {
     SEARCHING = 1U << 0,  ///< HOME_SEARCH_VEL is not 0
     LATCHING = 1U << 1,   ///< HOME_LATCH_VEL is not 0
     INDEX = 1U << 2,
-    SAME_WAY = 1U << 3,  ///< both velocities have one sign: the closing edge counts, else the opening one
+    SAME_WAY =
+        1U
+        << 3,  ///< both velocities have the same sign: the closing edge is used, otherwise the opening edge
     SHARED = 1U << 4,
     ABSOLUTE = 1U << 5,
     STAYING = 1U << 6,  ///< HOME_ABSOLUTE_ENCODER = 2
@@ -96,14 +98,14 @@ enum class Action : std::uint8_t {
     NOTHING,
     STOP,
     UNLOCK,
-    SET_PLACE,       ///< the current position is HOME_OFFSET
+    SET_PLACE,       ///< the current position becomes HOME_OFFSET
     SET_PLACE_STOP,  ///< the same, and stop
     SEARCH,
     BACK_OFF,
     LATCH,
     ASK_INDEX,
     LATCH_ASK_INDEX,
-    TAKE_INDEX,  ///< the position of the pulse is HOME_OFFSET
+    TAKE_INDEX,  ///< the position of the index pulse becomes HOME_OFFSET
     TAKE_INDEX_STOP,
     GO_HOME,
 };
@@ -111,14 +113,14 @@ enum class Action : std::uint8_t {
 struct Transition {
     State state;
     std::uint32_t events;        ///< all of these events; 0: at once
-    std::uint32_t when, unless;  ///< all of these settings, none of those
+    std::uint32_t when, unless;  ///< all of these settings, and none of those
     Action action = Action::NOTHING;
     State next = State::IDLE;
-    Failure failure = Failure::NONE;  ///< next is IDLE, and all joints that are being homed stop
-    bool isHomed = false;             ///< the joint is homed from here
+    Failure failure = Failure::NONE;  ///< the next state is IDLE, and all joints that are homing stop
+    bool isHomed = false;             ///< the joint is homed from this state on
 };
 
-/// The first matching row is taken, one per cycle; without a match nothing changes.
+/// The first matching row is used, one per cycle. Without a match nothing changes.
 inline constexpr Transition TRANSITIONS[] = {
     {UNDER_WAY, event::LIMIT, 0, 0, Action::STOP, State::IDLE, Failure::LIMIT_HIT},
     {UNDER_WAY, event::ABORT, 0, 0, Action::STOP, State::IDLE, Failure::ABORTED},

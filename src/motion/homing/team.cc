@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Common motion of joints. A group has one number of HOME_SEQUENCE, negative for at least one of its joints:
-// it begins the final move together. A team is the part of a group that moves one axis, such as the two sides
-// of a gantry: it starts and stops together on each leg, with one speed and one acceleration, and no two of
-// its joints differ by more than HOME_MAX_SKEW.
+// Moves joints together. A group has one number of HOME_SEQUENCE, negative for at least one of its joints:
+// its joints begin the final move together. A team is the part of a group that moves one axis, for instance
+// the two sides of a gantry. Its joints start and stop together on each leg, with one speed and one
+// acceleration, and no two of them differ by more than HOME_MAX_SKEW.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -13,9 +13,9 @@ namespace mw::homing {
 
 namespace {
 
-/// Default of HOME_MAX_SKEW: part of the range between the soft limits.
+/// Default of HOME_MAX_SKEW as a fraction of the range between the soft limits.
 constexpr double SKEW_SHARE = 0.01;
-/// `travel` is twice that range.
+/// Ratio of `travel` to that range.
 constexpr double TRAVEL_PER_RANGE = 2;
 /// Rounding error of a joint's travel.
 constexpr double ROUNDING = 1e-9;
@@ -30,7 +30,7 @@ bool areSameWay(double a, double b) noexcept {
 
 }  // namespace
 
-/// Both are being homed, end together, and move one axis or have a maximum difference.
+/// Both joints are homing, end together, and move one axis or have a maximum difference.
 bool Homing::areTeam(int a, int b) const noexcept {
     const Parameters &p = at(a).parameters;
     const Parameters &q = at(b).parameters;
@@ -50,7 +50,7 @@ bool Homing::hasTeam(int joint) const noexcept {
 
 std::uint32_t Homing::team_events(int joint, const JointInput *inputs) const noexcept {
     const Joint &j = at(joint);
-    // Or the joint is to back off further.
+    // Also true if the joint must back off further.
     const auto isClosed = [&](int n) {
         const Joint &one = at(n);
         const bool isNear = one.state == State::LATCH_BACKOFF && !inputs[n].isAtRest &&
@@ -110,7 +110,7 @@ bool Homing::isSkewed(int a, int b, const JointInput *inputs) const noexcept {
         return std::abs(now + left) > most + ROUNDING;
     }
     if (at(a).state == State::FINAL) {
-        return false;  // straight from here to there
+        return false;  // the joint moves directly to its target
     }
     const double acceleration = std::min(inputs[a].max_acceleration, inputs[b].max_acceleration);
     const double v = inputs[a].vel_cmd;
@@ -118,7 +118,7 @@ bool Homing::isSkewed(int a, int b, const JointInput *inputs) const noexcept {
     if (!(acceleration > 0) || (v == 0 && w == 0)) {
         return false;
     }
-    // Travel of each when it brakes one cycle later than now, after one more cycle of acceleration.
+    // Travel of each joint if it brakes one cycle later than now, after one more cycle of acceleration.
     const auto rest = [&](double way, double speed) {
         const double gain = speed == 0 ? 0.0 : std::copysign(acceleration * period_s_ * period_s_, speed);
         return way + 2 * speed * period_s_ + gain + speed * std::abs(speed) / (2 * acceleration);
@@ -171,8 +171,8 @@ void Homing::go(int joint, double Parameters::*velocity, double sign, const Join
     }
 }
 
-/// The final move. Joints of a team share its time, each with its part of the longest distance: their
-/// difference changes linearly to its final value.
+/// The final move. Joints of a team move for the same time, each over its part of the longest distance, so
+/// that their difference changes linearly to its final value.
 void Homing::go_home(int joint, const JointInput *inputs, JointCommand &out) noexcept {
     Joint &j = at(joint);
     const auto speed_of = [](const Parameters &p, const JointInput &in) {

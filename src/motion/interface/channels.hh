@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The shared memory between the task process and the realtime process. Holds no pointers.
-// Task side: one thread pushes commands and pops answers and faults. Realtime side: the servo thread and the
-// planner.
+// The memory shared by the task process and the realtime process. Contains no pointers. In task, one thread
+// pushes commands and pops answers and faults. In the realtime process, the servo thread and the planner use
+// it.
 #pragma once
 
 #include <atomic>
@@ -20,9 +20,10 @@ struct TraceSample {
     std::uint64_t cycle = 0;
     CommandId path_id = 0;  ///< the path command being executed, 0: none
     std::int32_t line = 0;
-    std::uint8_t isEnabled = 0;  ///< amp enables of all active joints on
+    std::uint8_t isEnabled = 0;  ///< the amplifiers of all active joints are enabled
     std::uint8_t isInMotion = 0;
-    /// Counts changes of the kinematics type, with overflow: the same joints have another pose after it.
+    /// Counts changes of the kinematics type (with overflow). After a change the same joint positions have a
+    /// different pose.
     std::uint8_t pose_kind = 0;
     std::uint8_t isRetracing = 0;  ///< on the recorded path (reverse run)
     Epoch epoch = 0;
@@ -45,20 +46,22 @@ struct Channels {
     SpscRing<Fault, 256> planner_faults;     ///< planner -> task
     PublishedStatus status;                  ///< servo -> any
 
-    /// Counts the loops of the task process; no change in the watchdog's time means that it hangs.
+    /// Counts the loops of the task process. If it does not change for the watchdog's time, task hangs.
     std::atomic<std::uint64_t> task_loops{0};
     /// Counts cycles of the ordinary thread of the realtime host. If this count stops too, the computer is
     /// too busy for both.
     std::atomic<std::uint32_t> host_looks{0};
-    /// Set by the realtime host when the kernel reports the end of the task process (pidfd, closed socket).
+    /// Set by the realtime host when the kernel reports that the task process has ended (pidfd, closed
+    /// socket).
     std::atomic<std::uint32_t> isTaskDead{0};
 
-    /// Filled by the servo thread while `isTracing`; a full ring counts in `trace_lost`.
+    /// The servo thread fills the trace while `isTracing`. If the ring is full, the sample is counted in
+    /// `trace_lost`.
     std::atomic<std::uint32_t> isTracing{0};
     std::atomic<std::uint64_t> trace_lost{0};
     SpscRing<TraceSample, 8192> trace;  ///< servo -> client that records a trace
 
-    /// The servo thread has commands to answer.
+    /// True if the servo thread must answer commands.
     bool hasCommands() const noexcept { return immediate.front() != nullptr; }
 };
 

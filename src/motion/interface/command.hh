@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The immediate channel into the motion controller: read by the servo thread, a bounded number per cycle.
-// Lengths in machine units, angles in degrees, times in seconds, unless the name has a unit.
+// The immediate channel into the motion controller: the servo thread reads up to a fixed number of commands
+// per cycle. Lengths in machine units, angles in degrees, times in seconds, unless the name has a unit.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace mw::motion {
 
-/// Commands of an epoch older than the controller's are answered STALE and do nothing.
+/// Commands of an epoch older than the controller's are answered STALE and have no effect.
 using Epoch = std::uint32_t;
-/// Unique per task process run, increasing, never 0.
+/// Unique for each run of the task process; increasing; never 0.
 using CommandId = std::uint64_t;
 
 enum class Mode : std::uint8_t { FREE, TELEOP, COORD };  ///< requirement A4
@@ -23,8 +23,8 @@ enum class Mode : std::uint8_t { FREE, TELEOP, COORD };  ///< requirement A4
 struct Abort {
     Epoch new_epoch = 0;
 };
-struct Enable {};   ///< amps on; the commanded position is taken from feedback
-struct Disable {};  ///< amps off in this cycle
+struct Enable {};   ///< switches the amplifiers on; the feedback becomes the commanded position
+struct Disable {};  ///< switches the amplifiers off in this cycle
 struct SetMode {
     Mode mode = Mode::FREE;
 };
@@ -41,9 +41,10 @@ struct SetNumJoints {
     int count = 0;
 };
 struct OverrideLimits {
-    bool isOn = true;  ///< ends with the next jog
+    bool isOn = true;  ///< the override ends with the next jog
 };
-/// The watchdog on the task process: no Heartbeat for `timeout_s` means a stop of category 1.
+/// The watchdog monitors the task process. Without a Heartbeat for `timeout_s`, it triggers a stop of
+/// category 1.
 struct SetWatchdog {
     bool isOn = false;
     double timeout_s = 0.5;
@@ -54,7 +55,7 @@ struct Heartbeat {};
 // ----------------------------------------------------------------------------------------------
 struct Pause {};
 struct Resume {};
-struct StepOnce {};  ///< resume, and pause again at the end of the current source block
+struct StepOnce {};  ///< resumes, and pauses at the end of the current source block
 struct SetReverse {
     bool isReverse = false;
 };
@@ -84,14 +85,14 @@ struct JogTarget {
     bool isJoint = true;
     int index = 0;
 };
-/// A lease that is not renewed ends the jog, even if task and the client have ended. The same command renews
-/// it and may change velocity and lease.
+/// A jog that is not renewed within its lease ends, even if task and the client have ended. Sending the same
+/// command again renews the lease and may change velocity and lease.
 inline constexpr double SHORTEST_JOG_LEASE_S = 0.02, LONGEST_JOG_LEASE_S = 10;
 struct JogContinuous {
     JogTarget target;
     double velocity = 0;     ///< signed
     double lease_s = 0;      ///< 0: runs until it is stopped
-    bool isRenewal = false;  ///< continues a jog that has a lease, never begins one
+    bool isRenewal = false;  ///< continues a jog that has a lease; never starts one
 };
 struct JogIncremental {
     JogTarget target;
@@ -147,7 +148,7 @@ struct SetAnalogOutput {
     double value = 0;
 };
 struct ClearProbeFlag {};
-/// The tool length changes here: the path before it cannot be run in reverse. Moves nothing; the pins
+/// Changes the tool length. The path before this point cannot be run in reverse. No joint moves; the pins
 /// motion.tooloffset.L belong to the I/O controller.
 struct SetToolOffset {
     geometry::Pose offset;
@@ -155,24 +156,24 @@ struct SetToolOffset {
 
 // --- configuration
 // ---------------------------------------------------------------------------------------------
-/// One mechanism for every setting (requirement C7): declared once in motion/interface/parameters.hh.
+/// One command for all settings (requirement C7), which motion/interface/parameters.hh declares.
 struct SetParameter {
     std::uint16_t parameter = 0;  ///< motion::Parameter
-    std::int16_t index = 0;       ///< joint, axis or spindle; 0 for machine-wide ones
+    std::int16_t index = 0;       ///< joint, axis or spindle; 0 for settings of the whole machine
     double value = 0;
 };
 
 inline constexpr int MAX_SCREW_POINTS = 10000;
-/// Maximum slope of a table of screw errors [units per unit]; the rest of the joint's limits is for changes
-/// of direction.
+/// Maximum slope of a screw compensation table [units per unit]. The rest of the joint's limits is for
+/// changes of direction.
 inline constexpr double STEEPEST_SCREW = 0.25;
-/// One point of a table of screw errors (LOAD_COMP), in order. The table is active once it is complete, and
-/// replaces backlash.
+/// One point of a screw compensation table (LOAD_COMP), in order. The table becomes active when it is
+/// complete. It replaces backlash.
 struct LoadCompensation {
     int joint = 0;
-    int index = 0, count = 0;         ///< of `count` points; count 0: removes the table
-    double nominal = 0;               ///< position of the joint, larger than that of the point before
-    double forward = 0, reverse = 0;  ///< to be added to the motor's on the way up and down
+    int index = 0, count = 0;         ///< index of a point, of `count` points; count 0: removes the table
+    double nominal = 0;               ///< position of the joint, larger than that of the previous point
+    double forward = 0, reverse = 0;  ///< added to the motor position in positive and negative travel
 };
 
 using CommandBody =

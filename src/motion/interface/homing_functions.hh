@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Functions that a homing module exports (hal/include/homing.h declares them). A module that lacks one is not
-// accepted.
+// Functions that a homing module must export (declared in hal/include/homing.h). A module without one of them
+// is not accepted.
 #pragma once
 
 namespace mw::motion {

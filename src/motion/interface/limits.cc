@@ -9,7 +9,7 @@ namespace mw::motion {
 
 namespace {
 
-/// Part of the joints' limits that axes get if the planner cannot call the kinematics.
+/// Fraction of the joint limits for axes if the planner cannot call the kinematics.
 constexpr double UNKNOWN_SHARE = 0.4;
 
 std::size_t at(int i) noexcept {
@@ -28,7 +28,7 @@ double jog_jerk(double jerk) noexcept {
     return jerk < NO_JERK_LIMIT ? jerk : 0.0;
 }
 
-/// The lowest of all added limits.
+/// The lowest of the limits that were added.
 struct Tightest {
     double velocity, acceleration, jerk;
 
@@ -45,7 +45,7 @@ struct Tightest {
     }
 };
 
-/// External offsets get `ratio` of the axis's limits, paths and jogs the rest.
+/// External offsets may use `ratio` of the limits of the axis; paths and jogs may use the rest.
 void share_with_offset(double ratio, Tightest &all, MotionLimits &jog, MotionLimits &offset) noexcept {
     offset = {ratio * jog.velocity, ratio * jog.acceleration, ratio * jog.jerk};
     const double rest = 1 - ratio;
@@ -71,7 +71,7 @@ void fold_locks(const Settings &s, const AxisMap &map, int axis, FoldedLimits &o
     out.locks |= locks;
 }
 
-/// A joint of the axis has a lock.
+/// True if a joint of the axis has a lock.
 bool isLocked(const AxisMap &map, int axis, const FoldedLimits &out) noexcept {
     bool isAny = out.axis_locks[at(axis)] != 0;
     for (int j = 0; j < map.num_led(); ++j) {
@@ -105,8 +105,8 @@ void fold_axis(const Settings &s, const AxisMap &map, int axis, FoldedLimits &ou
         share_with_offset(ratio, all, out.axis_jog[at(axis)], out.offset[at(axis)]);
     }
     for (int j = 0; j < map.num_led() && map.kind == AxisMap::Kind::UNKNOWN; ++j) {
-        // It is unknown how joints follow axes: axes stay well below the limits of joints of the same type.
-        // The servo thread keeps jogs within the joints' limits.
+        // It is unknown how the joints follow the axes. So axes use less than the limits of joints of the
+        // same type, and the servo thread keeps jogs within the joint limits.
         if (s.isSet(Parameter::JOINT_IS_ANGULAR, j) == geometry::isAngular(axis)) {
             all.take_joint(s, j, UNKNOWN_SHARE);
         }
@@ -137,7 +137,8 @@ bool isOffsetOf(const AxisMap &map, int j, int axis, const FoldedLimits &out) no
     return out.offset[at(axis)].velocity > 0 && map.linear.moves(j, axis);
 }
 
-/// Of a joint that is no axis, each offset gets its ratio of what all axes with offsets may use at once.
+/// If joints are not axes: each external offset may use its ratio of the joint limits divided by the slopes
+/// of all axes with offsets.
 void limit_offsets(const Settings &s, const AxisMap &map, int j, FoldedLimits &out) noexcept {
     double sum = 0;
     for (int axis = 0; axis < MAX_AXES; ++axis) {
@@ -157,7 +158,7 @@ void limit_offsets(const Settings &s, const AxisMap &map, int j, FoldedLimits &o
     }
 }
 
-/// Limits of a joint for paths and jogs: its limits minus the share of external offsets.
+/// Limits of a joint for paths and jogs: its limits without the share of external offsets.
 void leave_to_paths(const AxisMap &map, int j, FoldedLimits &out) noexcept {
     trajectory::JointLimits &left = out.path_joints;
     for (int axis = 0; axis < MAX_AXES; ++axis) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Limits of joints, axes and machine folded together, in one place for paths, jogs, checks and estimates.
-// Pure.
+// Combines the limits of joints, axes and the machine for paths, jogs, checks and estimates. Pure.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +17,7 @@
 
 namespace mw::motion {
 
-/// A limit of the path's jerk below this turns jerk-limited planning off [machine units/s^3].
+/// A path jerk limit below this value switches jerk-limited planning off [machine units/s^3].
 inline constexpr double LEAST_JERK = 1;
 
 /// Which axis each joint moves, and which thread may call the kinematics where joints are not axes.
@@ -29,17 +28,17 @@ struct AxisMap {
         UNKNOWN,          ///< only the servo thread may call the kinematics
     };
     Kind kind = Kind::JOINTS_ARE_AXES;
-    int num_joints = 0;                                   ///< of the machine; there are no others
-    int num_extra = 0;                                    ///< the last of them, which no pose moves
-    std::array<std::int8_t, MAX_JOINTS> axis_of_joint{};  ///< -1: none; used where joints are axes
-    kinematics::LinearJoints linear;                      ///< of joints that are no axes
+    int num_joints = 0;                                   ///< number of joints of the machine
+    int num_extra = 0;                                    ///< the last joints, which no pose moves
+    std::array<std::int8_t, MAX_JOINTS> axis_of_joint{};  ///< -1: none; used only if joints are axes
+    kinematics::LinearJoints linear;                      ///< of joints that are not axes
 
-    /// A joint of the machine moves this axis; kinematics may move any.
+    /// True if a joint of the machine moves this axis; kinematics may move any axis.
     bool hasAxis(int axis) const noexcept;
     int num_led() const noexcept { return num_joints - num_extra; }  ///< that a pose moves
     /// Joints of the machine that a pose moves, and the axes that move any of them.
     void set_linear(const kinematics::LinearJoints &all) noexcept;
-    /// False when a parameter of the kinematics changed that makes joints linear.
+    /// False after a change of a kinematics parameter on which the linearity of joints depends.
     bool isAsIn(const kinematics::Kinematics &kinematics) const noexcept;
     /// The axis may have an offset that adds to a jog or path and moves its joints.
     bool mayHaveOffset(int axis) const noexcept;
@@ -49,7 +48,7 @@ struct AxisMap {
     }
 };
 
-/// The last `num_extra` of `num_joints` are none of the kinematics.
+/// The last `num_extra` of `num_joints` joints are not joints of the kinematics.
 AxisMap axis_map(const kinematics::Kinematics &kinematics, int num_joints, int num_extra = 0) noexcept;
 /// Joint n moves the axis of the n-th letter.
 AxisMap axis_map(std::string_view letters, int num_joints) noexcept;
@@ -89,19 +88,19 @@ struct JointRange {
     }
 };
 
-/// Joints that are no axes, move in proportion to axes, and are moved by an axis that may have an external
-/// offset: program and offsets share their travel.
+/// Joints that are not axes, move in proportion to axes, and are moved by an axis that may have an external
+/// offset. Program and offsets share their travel.
 struct SharedJoints {
     std::uint32_t joints = 0;  ///< bit per joint
     std::uint32_t axes = 0;    ///< bit per axis that moves one of them
     std::array<geometry::Pose, MAX_JOINTS> slope{};
 
-    /// Their positions at a pose; 0 for other joints.
+    /// Joint positions at a pose; 0 for other joints.
     JointRange at(const geometry::Pose &pose) const noexcept;
-    /// Their range while each axis is anywhere in its range.
+    /// Joint range while each axis may be anywhere in its range.
     JointRange within(const PoseRange &range) const noexcept;
 };
-/// Of axes that may have one, a bit each.
+/// The second argument has a bit for each axis that may have an external offset.
 SharedJoints shared_joints(const kinematics::LinearJoints &linear, std::uint32_t offset_axes) noexcept;
 
 /// Current or possible range of each axis, and of shared joints.
@@ -115,7 +114,7 @@ struct TravelRange {
     }
 };
 
-/// Of a move of one joint, axis or external offset.
+/// Limits of a move of one joint, axis or external offset.
 struct MotionLimits {
     double velocity = 0, acceleration = 0;
     double jerk = 0;  ///< 0: none
@@ -128,23 +127,24 @@ inline constexpr std::array<std::int8_t, MAX_AXES> NO_INDEXERS = [] {
 }();
 
 struct FoldedLimits {
-    trajectory::Limits path;   ///< of moves of axes: limits of the axes and of the joints that move them
-    geometry::Pose low, high;  ///< soft limits of axes, with those of joints; +-infinity without a limit
-    std::uint32_t axes = 0;    ///< bit per axis that a joint or the kinematics move
+    trajectory::Limits path;  ///< of moves of axes: limits of the axes and of the joints that move them
+    geometry::Pose low,
+        high;  ///< soft limits of axes, including those of their joints; +-infinity without a limit
+    std::uint32_t axes = 0;  ///< bit per axis that a joint or the kinematics moves
     trajectory::JointLimits joints;
     trajectory::JointLimits
         path_joints;  ///< limits of joints for paths and jogs of axes, without the share of external offsets
     HomedJoints homed;
-    /// Joint whose lock a program opens for G0 of each axis; -1: none.
+    /// Joint whose lock opens for a G0 of this axis; -1: none.
     std::array<std::int8_t, MAX_AXES> indexer = NO_INDEXERS;
     std::uint32_t locks = 0;                           ///< bit per joint that has a lock
-    std::array<std::uint32_t, MAX_AXES> axis_locks{};  ///< locks that each axis moves
-    std::array<double, MAX_JOINTS> travel{};           ///< between the soft limits of a joint, homed or not
+    std::array<std::uint32_t, MAX_AXES> axis_locks{};  ///< bit per lock of the joints that each axis moves
+    std::array<double, MAX_JOINTS> travel{};  ///< distance between the soft limits of a joint, homed or not
     std::array<MotionLimits, MAX_JOINTS> joint_jog{};
     std::array<MotionLimits, MAX_AXES> axis_jog{};
-    std::array<MotionLimits, MAX_AXES> offset{};  ///< external ones; velocity 0: the axis has none
+    std::array<MotionLimits, MAX_AXES> offset{};  ///< external offsets; velocity 0: the axis has none
 
-    /// Locks that are opened for a jog.
+    /// Locks that must open for a jog.
     std::uint32_t locks_of(const JogTarget &target) const noexcept {
         return target.isJoint ? locks & 1U << target.index
                               : axis_locks[static_cast<std::size_t>(target.index)];
@@ -155,7 +155,7 @@ struct FoldedLimits {
     }
 };
 
-/// Jerk-limited planning is selected and has a limit.
+/// True if jerk-limited planning is selected and has a limit.
 bool isJerkLimited(const Settings &settings) noexcept;
 
 /// [any thread]
@@ -164,7 +164,7 @@ FoldedLimits fold_limits(const Settings &settings, const AxisMap &map, const Hom
 struct JogRange {
     double low = 0, high = 0;
 };
-/// Range of a jog: soft limits of homed joints and axes, before homing twice the travel around the current
+/// Range of a jog: soft limits of homed joints and axes; before homing, twice the travel around the current
 /// position. `joint_positions` has MAX_JOINTS elements.
 JogRange jog_range(const FoldedLimits &limits, const AxisMap &map, const JogTarget &target,
                    const double *joint_positions) noexcept;

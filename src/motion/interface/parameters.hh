@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every setting of the motion controller, declared once: number, name, INI key, unit, range. A new setting is
-// one row here; SetParameter, the INI reading and the page docs/reference/ini.md follow from it.
+// Declares every setting of the motion controller once: number, name, INI key, unit, range. A new setting is
+// one row; SetParameter, the INI reader and the page docs/reference/ini.md use this table.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ inline constexpr double UNBOUNDED = std::numeric_limits<double>::infinity();
 /// A jerk limit of this value or more counts as none [unit/s^3].
 inline constexpr double NO_JERK_LIMIT = 1e9;
 
-// X(name, scope, INI section, INI key, unit, lowest, highest, default, what it is)
-// LENGTH, SPEED... are in the joint's or axis's own unit (machine units or degrees).
+// X(name, scope, INI section, INI key, unit, minimum, maximum, default, description). LENGTH, SPEED... are in
+// the unit of the joint or axis (machine units or degrees).
 #define MW_MOTION_PARAMETERS(X)                                                                              \
     X(TRAJ_MAX_VELOCITY, MACHINE, "TRAJ", "MAX_LINEAR_VELOCITY", SPEED, 0, UNBOUNDED, UNBOUNDED,             \
       "along the path")                                                                                      \

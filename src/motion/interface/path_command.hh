@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The path channel: moves, and the commands that are synchronized with them, in program order. Read by the
-// planner. Machine coordinates; lengths in machine units, angles in degrees.
+// The path channel, which the planner reads: moves and synchronized commands in program order. Machine
+// coordinates; lengths in machine units, angles in degrees.
 #pragma once
 
 #include <cstdint>
@@ -23,14 +23,14 @@ enum class MotionType : std::uint8_t {
 };
 using geometry::PathMode;
 
-/// Source of a move; shown to the operator, written to the trace.
+/// Source of a move, shown to the operator and written to the trace.
 struct SourceTag {
     std::int32_t line = 0;         ///< the operator's line number
     std::uint32_t file_index = 0;  ///< task's table of files
-    std::uint32_t block = 0;       ///< counts executed blocks; single-block stops are at its changes
+    std::uint32_t block = 0;       ///< counts executed blocks; single-block mode stops when it changes
 };
 
-/// Conditions of one move: those of the program and those that task adds.
+/// Conditions of a move: from the program, and added by task.
 struct MoveTerms : geometry::MoveSettings {
     bool isFeedOverridable = true;
     bool isWaitingForSpindleSpeed = false;  ///< waits before this move for spindle.N.at-speed
@@ -50,8 +50,8 @@ struct Arc {
 };
 struct Probe {
     geometry::Pose end;
-    bool isAway = false;   ///< trips when contact is lost
-    bool mustTrip = true;  ///< reaching the end untripped is an error
+    bool isAway = false;   ///< stops when contact is lost
+    bool mustTrip = true;  ///< reaching the end without contact is an error
     MoveTerms terms;
 };
 struct RigidTap {
@@ -68,7 +68,8 @@ struct SynchedAnalogOutput {
     int index = 0;
     double value = 0;
 };
-/// No command follows for now: plan to the end of the queue. Answered DONE when motion has stopped there.
+/// The last command for now: the planner plans to the end of the queue. Answered DONE when motion has stopped
+/// there.
 struct Flush {};
 
 using PathBody = std::variant<Line, Arc, Probe, RigidTap, SynchedDigitalOutput, SynchedAnalogOutput, Flush>;

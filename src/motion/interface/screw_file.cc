@@ -23,7 +23,7 @@ struct ScrewLine {
     std::array<int, 3> column{};
 };
 
-/// A line of three numbers; nothing for an empty line or a comment.
+/// Parses a line of three numbers; nothing for an empty line or a comment.
 Result<std::optional<ScrewLine>> parse_line(std::string_view line, SourcePlace place) {
     line = line.substr(0, line.find('#'));
     ScrewLine out;
@@ -55,7 +55,7 @@ Result<std::optional<ScrewLine>> parse_line(std::string_view line, SourcePlace p
     return out;
 }
 
-/// Reason why a point cannot follow the one before it.
+/// Reason why a point cannot follow the previous point.
 Result<> check_step(const LoadCompensation &last, const LoadCompensation &next, const ScrewLine &line,
                     SourcePlace place) {
     place.column = line.column[0];

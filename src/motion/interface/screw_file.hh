@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Files of screw errors ([JOINT_n]COMP_FILE), read and checked before motion gets them. Not realtime.
+// Reads and checks screw compensation files ([JOINT_n]COMP_FILE) before motion gets them. Not realtime.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace mw::motion {
 
-/// Meaning of the second and third number of a line, for forward and reverse travel.
+/// Meaning of the second and third numbers of a line, for forward and reverse travel.
 enum class ScrewFileType : std::uint8_t {
     ACTUAL = 0,  ///< measured position of the joint at the nominal position
     OFFSET = 1,  ///< correction to add

@@ -29,7 +29,7 @@ class Settings {
     std::uint32_t version() const noexcept { return version_; }
     bool isSet(Parameter p, int index = 0) const noexcept { return get(p, index) != 0.0; }
 
-    /// NONE and the value is set, or the reason why it is rejected.
+    /// Returns NONE if the value was set, otherwise the reason for rejecting it.
     Reason set(const SetParameter &c, int num_joints, int num_spindles) noexcept {
         if (c.parameter >= static_cast<std::uint16_t>(Parameter::COUNT)) {
             return Reason::NO_SUCH_PARAMETER;

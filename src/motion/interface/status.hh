@@ -44,11 +44,11 @@ struct Status {
     std::int64_t time_ns = 0;
     Epoch epoch = 0;
     CommandId last_immediate_id = 0;  ///< answered or done
-    CommandId last_path_id = 0;       ///< last path command whose motion is complete
+    CommandId last_path_id = 0;       ///< last path command whose motion has completed
     CommandId active_path_id = 0;     ///< being executed, 0: none
     Mode mode = Mode::FREE;
     bool isEnabled = false;
-    bool isInPosition = true;  ///< nothing moves and nothing is committed
+    bool isInPosition = true;  ///< nothing moves and no plan is committed
     bool isPaused = false, isStepping = false, isReverse = false;
     bool isTaskLost = false;  ///< the watchdog or the host reports the end of the task process
     bool isAllHomed = false;
@@ -65,7 +65,7 @@ struct Status {
     double feed_scale = 1.0, rapid_scale = 1.0, net_feed_scale = 1.0;
     bool isFeedOverrideEnabled = true, isAdaptiveFeedEnabled = false, isFeedHoldEnabled = true;
     int num_joints = 0, num_spindles = 0;
-    int num_extra_joints = 0;                       ///< the last of the joints, which no pose moves
+    int num_extra_joints = 0;                       ///< the last joints, which no pose moves
     std::uint64_t digital_in = 0, digital_out = 0;  ///< bit per pin
     std::array<JointStatus, MAX_JOINTS> joint{};
     std::array<AxisStatus, MAX_AXES> axis{};
@@ -73,7 +73,7 @@ struct Status {
     std::array<double, MAX_ANALOG_IO> analog_in{}, analog_out{};
 };
 
-/// Position of the machine for programs, without external offsets.
+/// Position of the machine as the program sees it, without external offsets.
 inline geometry::Pose programmed_position(const Status &status) noexcept {
     geometry::Pose pose = status.carte_pos_cmd;
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
@@ -82,7 +82,7 @@ inline geometry::Pose programmed_position(const Status &status) noexcept {
     return pose;
 }
 
-/// `Status` is published in these parts: a client that reads often copies only the parts that changed.
+/// `Status` is published in parts, so that a client that reads often copies only parts that have changed.
 namespace status_part {
 inline constexpr int WHOLE_MACHINE = 0, JOINTS = 1, AXES = JOINTS + MAX_JOINTS, SPINDLES = AXES + 1,
                      ANALOG_IN = SPINDLES + MAX_SPINDLES, ANALOG_OUT = ANALOG_IN + 1, COUNT = ANALOG_OUT + 1;
@@ -133,28 +133,29 @@ enum class Reason : std::uint16_t {
     NO_WAY_BACK,  ///< no path is recorded
     BAD_ARC,
     RIGID_TAPPING,   ///< the planner cannot call the kinematics
-    TAP_OFFSET,      ///< index: an axis of the tap; external offsets move it or its joints
-    TAP_ROOM,        ///< index: the axis whose soft limit is too near
-    TAP_JOINT_ROOM,  ///< index: the joint whose soft limit is too near; -1: end of the reach of the
+    TAP_OFFSET,      ///< index: an axis of the tap that external offsets move, or whose joints they move
+    TAP_ROOM,        ///< index: the axis whose soft limit is too close
+    TAP_JOINT_ROOM,  ///< index: the joint whose soft limit is too close; -1: end of the range of the
                      ///< kinematics
     ONE_WAY_SPINDLE,
     JOG_INHIBITED,
     HOMING_INHIBITED,
     SYNCHRONISED_JOINT,  ///< a joint of a negative HOME_SEQUENCE is not jogged alone
     NO_JOG_TO_RENEW,
-    SWITCHED_ON,     ///< the machine must be off
+    SWITCHED_ON,     ///< the command requires machine off
     TOO_FEW_JOINTS,  ///< index: number of joints that the kinematics moves
-    SINGULAR,        ///< through a pose for which the kinematics has many solutions
+    SINGULAR,        ///< the path contains a pose for which the kinematics has many solutions
     POSE_UNKNOWN,    ///< the kinematics has no pose for the joint positions
-    SIDE_APART,      ///< index: the joint that differs from its position in the pose
+    SIDE_APART,      ///< index: the joint whose position differs from that of the pose
     NO_FEEDBACK,     ///< a joint's feedback is not a number
-    DRIVEN_BY_PIN,   ///< an extra joint that is homed
-    INDEXER_ALONE,   ///< a locking indexer moves alone, in programs with G0; others while it is locked
+    DRIVEN_BY_PIN,   ///< index: a homed extra joint, which its pin commands
+    INDEXER_ALONE,   ///< a locking indexer moves only alone, in programs only with G0; other axes only while
+                     ///< it is locked
     INDEXER_OPEN,    ///< a locking indexer is not locked
     COUNT,
 };
 
-/// Each command gets exactly one. For path commands DONE comes when the motion is complete.
+/// Each command gets exactly one answer. For path commands, DONE is sent when the motion has completed.
 struct Answer {
     CommandId id = 0;
     AnswerKind kind = AnswerKind::DONE;
@@ -170,8 +171,8 @@ enum class FaultKind : std::uint16_t {
     HARD_LIMIT,
     SOFT_LIMIT,
     ENABLE_LOST,
-    TASK_LOST,     ///< index: 1 it has ended, 0 it does not loop; value: for how long [s]
-    MOTION_STOOD,  ///< the servo thread did not run; index: 1 axes moved, 0 none; value: time [s]
+    TASK_LOST,     ///< index: 1 if it has ended, 0 if it does not loop; value: time [s]
+    MOTION_STOOD,  ///< the servo thread was interrupted; index: 1 if axes moved, 0 if not; value: time [s]
     HOMING_FAILED,
     PROBE_NOT_TRIPPED,  ///< at the end of the move; detail: 1 for loss of contact
     PROBE_TRIPPED_IN_MOVE,
@@ -179,7 +180,7 @@ enum class FaultKind : std::uint16_t {
     PATH_LIMIT,
     SPINDLE_FAULT,
     MISC_ERROR,
-    NO_WAY_ON,        ///< the planner has stopped and finds no plan
+    NO_WAY_ON,        ///< the planner has stopped the path because it finds no plan
     JOG_JOINT_LIMIT,  ///< an axis jog was stopped before a joint's soft limit
     JOG_UNREACHABLE,  ///< an axis jog was stopped before a pose that the kinematics do not reach
     JOINT_TOO_FAST,   ///< value: use of the limit; the planner cannot call the kinematics
@@ -188,8 +189,8 @@ enum class FaultKind : std::uint16_t {
     JOG_LEASE_ENDED,  ///< a jog was not renewed in time; detail: 1 a joint, 0 an axis; value: the lease [s]
     KINEMATICS_JUMP,  ///< index: the joint that would jump; value: distance
     NO_KINEMATICS_TYPE,            ///< value: the requested type
-    KINEMATICS_SWITCHED_ON_PATH,   ///< the same; the path was stopped
-    KINEMATICS_TYPE_WITHOUT_POSE,  ///< the same; it has no pose for the joint positions
+    KINEMATICS_SWITCHED_ON_PATH,   ///< as above, but the path was stopped
+    KINEMATICS_TYPE_WITHOUT_POSE,  ///< as above, but the type has no pose for the joint positions
     HOMING_CLAMPED,          ///< a homing module has commanded more than the limits of joint `index` allow
     FEEDBACK_LOST,           ///< index: the joint whose feedback is not a number
     TAP_TOO_FAST,            ///< index: spindle; value: required speed over the possible one
@@ -202,16 +203,16 @@ enum class FaultKind : std::uint16_t {
     INDEXER_LOCKED_IN_MOVE,  ///< index: the joint whose pin is-unlocked became FALSE during its move
     EXTRA_JOINT_LOST,        ///< index: the joint whose pin posthome-cmd is not a number
     EXTRA_JOINT_LIMIT,       ///< index: the joint whose pin posthome-cmd is outside its range
-    SIDE_APART,              ///< index: joint; switched on in free mode
-    POSE_UNKNOWN,            ///< the kinematics has no pose for the joint positions; the same
-    PLANNER_MODULE,          ///< detail: PlannerModuleFault; value: requested over possible
-    POSITIONS_LOST,          ///< a driver reports that its positions are not those of the machine
-    SPINDLE_LOST,  ///< index: spindle whose feedback is not a number while a move is in step with it
+    SIDE_APART,              ///< index: joint; the machine was switched on in free mode
+    POSE_UNKNOWN,            ///< the kinematics has no pose for the joint positions; switched on in free mode
+    PLANNER_MODULE,          ///< detail: PlannerModuleFault; value: requested over possible speed
+    POSITIONS_LOST,          ///< a driver reports that its positions do not match the machine
+    SPINDLE_LOST,            ///< index: spindle whose feedback is not a number during a synchronized move
     COUNT,
 };
-/// Of PLANNER_MODULE: error in the speeds of the module.
+/// Detail of PLANNER_MODULE: error in the speeds of the module.
 enum class PlannerModuleFault : std::uint16_t { NO_ANSWER = 1, TOO_FAST, TOO_HARD, TOO_LATE, NOT_THERE };
-/// Only a message: no path has failed.
+/// True for a message without effect on the path.
 constexpr bool isOnlyTold(FaultKind kind) noexcept {
     return kind == FaultKind::HOMING_CLAMPED || kind == FaultKind::JOG_JOINT_LIMIT ||
            kind == FaultKind::JOG_UNREACHABLE || kind == FaultKind::JOG_LEASE_ENDED ||
@@ -222,7 +223,7 @@ struct Fault {
     FaultKind kind = FaultKind::FOLLOWING_ERROR;
     std::int16_t index = -1;
     std::uint16_t detail = 0;  ///< per kind: homing: homing::Failure
-    double value = 0;          ///< per kind: the position, the following error
+    double value = 0;          ///< depends on the fault: the position, the following error
     SourceTag source;
 };
 

@@ -18,7 +18,8 @@ std::string axis_name(int index) {
                                                       : std::string("an axis");
 }
 
-/// Path commands refer to axes, immediate ones to joints, or to axes in teleop; both if unknown.
+/// Path commands name axes; immediate commands name joints, or axes in teleop mode; both if the mode is
+/// unknown.
 std::string place_name(const Answer &a) {
     if (a.index < 0) {
         return "a joint or axis";

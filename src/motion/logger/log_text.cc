@@ -13,7 +13,7 @@ namespace {
 
 using Lines = LogText::Lines;
 
-/// LinuxCNC's number for no limit.
+/// LinuxCNC's number for an absent limit.
 double finite(double value) {
     constexpr double NO_LIMIT = 1e99;
     return std::isinf(value) ? std::copysign(NO_LIMIT, value) : value;
@@ -91,7 +91,7 @@ double time_over(const geometry::Pose &way, const std::array<double, geometry::A
     return longest;
 }
 
-/// Over X Y Z if they move, else over U V W, else over A B C.
+/// Length over X Y Z if they move, otherwise over U V W, otherwise over A B C.
 double feed_length(const geometry::Pose &way) {
     for (const int first : {geometry::AXIS_X, geometry::AXIS_U, geometry::AXIS_A}) {
         const double length = std::hypot(way[first], way[first + 1], way[first + 2]);

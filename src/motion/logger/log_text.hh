@@ -13,8 +13,8 @@
 
 namespace mw::motion {
 
-/// One thread. Settings come as a list at the start and are logged when it is complete (SetNumJoints), in the
-/// order and with the names of LinuxCNC's tests. Later settings are logged at once.
+/// One thread. Settings arrive as a list at the start and are logged when it is complete (SetNumJoints), in
+/// the order and with the names of LinuxCNC's tests. Later settings are logged at once.
 class LogText {
   public:
     using Lines = std::vector<std::string>;

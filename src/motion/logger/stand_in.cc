@@ -16,7 +16,7 @@ void answer(auto &answers, CommandId id, bool isStale, bool isPath) {
     answers.push(answer);
 }
 
-/// Changes of the visible state by a command.
+/// Applies a command to the visible status.
 void follow(const CommandBody &body, Status &status) {
     const auto set_homed = [&status](int joint, bool isHomed) {
         for (int j = 0; j < status.num_joints; ++j) {
@@ -48,7 +48,7 @@ void follow(const CommandBody &body, Status &status) {
                 status.digital_out = c.isOn ? status.digital_out | bit : status.digital_out & ~bit;
             },
             [&](const SetAnalogOutput &c) { status.analog_out[static_cast<std::size_t>(c.index)] = c.value; },
-            // Commands without an entry in the log, and requests for moves that the logger does not make.
+            // Commands without an entry in the log, and move requests that the logger does not execute.
             [](const OneOf<Abort, SetAmplifier, SetJointActive, OverrideLimits, SetWatchdog, Heartbeat,
                            StepOnce, SetReverse, SetScale, SetSwitch, SetMaxVelocity, JogContinuous,
                            JogIncremental, JogAbsolute, JogStop, SetTeleopVector, SpindleOrient, SpindleBrake,
@@ -104,7 +104,7 @@ void StandIn::step(std::int64_t time_ns) {
         return into.has_value();
     };
     while (true) {
-        // A stop is sent after the moves that it makes stale, so the path is read first if both wait.
+        // A stop is sent after the moves that it cancels, so the path is read first if both wait.
         const bool hasPath = fetch(channels_.path, path), hasCommand = fetch(channels_.immediate, immediate);
         if (hasPath && (!hasCommand || path->id < immediate->id)) {
             take(*path);

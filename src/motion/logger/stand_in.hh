@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A motion controller for tests of task: executes every command at once without motion, and logs it.
+// A motion controller for tests of task. It executes every command at once, without motion, and logs it.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace mw::motion {
 class StandIn {
   public:
     using Say = std::function<void(const std::string &)>;
-    /// `channels` are new and must outlive it.
+    /// `channels` must be new and outlive the object.
     StandIn(Channels &channels, Say say);
 
     /// Answers waiting commands in order, and publishes the state after them.

@@ -10,12 +10,12 @@ namespace mw::motion {
 
 namespace {
 
-/// Number of updates without a new command after which the end of the last move is planned.
+/// After this many updates without a new command, the end of the last move is planned.
 constexpr int STARVING_UPDATES = 3;
 
 /// Rounding of a corner within the extent of its moves [machine units, degrees].
 constexpr double CORNER_ROUNDING = 1e-6;
-/// Time from making a plan to its start; a slower planner makes the plan again.
+/// Time between making a plan and its start; if the planner takes longer, it makes the plan again.
 constexpr double LATENCY_S = 3e-3;
 
 std::uint64_t latency_cycles(double period_s) noexcept {
@@ -31,7 +31,7 @@ PathPlanner::PathPlanner(const PathPlannerConfig &config, const kinematics::Kine
 
 void PathPlanner::update() noexcept {
     if (!link_.view.read(view_, 1000)) {
-        return;  // the servo thread is writing; try again in the next update
+        return;  // the servo thread is writing; retry in the next update
     }
     follow_controller();
     if (limits_.offset_axes != 0) {
@@ -92,7 +92,7 @@ void PathPlanner::follow_controller() noexcept {
     planner_.set_scales(scales);
 }
 
-/// The executor has dropped its path: a tripped probe, or a stop.
+/// Handles a path that the executor has dropped after a probe trip or a stop.
 void PathPlanner::follow_drops() noexcept {
     if (view_.executor.drops == drops_) {
         return;
@@ -106,7 +106,7 @@ void PathPlanner::follow_drops() noexcept {
         answer(last_done_, AnswerKind::DONE, Reason::NONE);
         pending_.drop();
     }
-    // An abort has already begun a new epoch; any other stop breaks the path of the current one.
+    // An abort has already started a new epoch; any other stop interrupts the path of the current one.
     isBroken_ = isBroken_ || (!pending_.isEmpty() && pending_.newest().epoch == view_.epoch);
     while (!pending_.isEmpty()) {
         answer(pending_.oldest().id, AnswerKind::STALE, Reason::NONE);
@@ -137,7 +137,7 @@ void PathPlanner::complete_moves() noexcept {
             }
         }
         if (p.isProbe && e.isDropping) {
-            return;  // its stop, which may reach its end, is not complete
+            return;  // its stop has not completed and may reach its end
         }
         const bool isTripped = p.isProbe && view_.probe_trips != probe_trips_;
         probe_trips_ = isTripped ? view_.probe_trips : probe_trips_;
@@ -154,7 +154,7 @@ void PathPlanner::complete_moves() noexcept {
     }
 }
 
-/// Takes as many commands as fit; true when one was taken.
+/// Takes as many commands as fit. Returns true if it took one.
 bool PathPlanner::take_commands() noexcept {
     bool isAny = false;
     isQueueFull_ = false;
@@ -167,7 +167,7 @@ bool PathPlanner::take_commands() noexcept {
         }
         const auto age = static_cast<std::int32_t>(c->epoch - epoch_);
         if (age > 0) {
-            break;  // of an epoch that the controller has not begun
+            break;  // the controller has not started this epoch
         }
         if (age < 0 || isBroken_) {
             answer(c->id, AnswerKind::STALE, Reason::NONE);
@@ -207,7 +207,7 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
         planner_.release_end();
         return true;
     }
-    // The corners of a thread depend on the speed of its spindle.
+    // The corners of a thread depend on the spindle speed.
     const auto *line = std::get_if<Line>(&c.body);
     if (line != nullptr && line->terms.isThread() && wasLocked_ && !areSpindlesReady()) {
         return true;
@@ -215,7 +215,7 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     const bool isOutput = std::holds_alternative<SynchedDigitalOutput>(c.body) ||
                           std::holds_alternative<SynchedAnalogOutput>(c.body);
     if (isOutput && link_.store.events.size() >= link_.store.events.capacity()) {
-        planner_.release_end();  // the moves before it change once the path is driven to here
+        planner_.release_end();  // previous moves change when the path is executed to here
         isQueueFull_ = true;
         return true;
     }
@@ -223,7 +223,7 @@ bool PathPlanner::isWaiting(const PathCommand &c) noexcept {
     return isQueueFull_ || pending_.size() + 2 >= PendingCommands::CAPACITY;
 }
 
-/// True when all accepted commands are driven.
+/// True if all accepted commands have been executed.
 bool PathPlanner::isIdle() const noexcept {
     const trajectory::Snapshot &e = view_.executor;
     return pending_.isEmpty() && e.motion == trajectory::Motion::REST && e.done_move >= planner_.last_move();
@@ -251,7 +251,7 @@ Reason PathPlanner::accept_flush(const PathCommand &c) noexcept {
     return Reason::NONE;
 }
 
-/// Every path command has a handler here; a missing one does not compile.
+/// Every path command must have a handler here; otherwise it does not compile.
 Reason PathPlanner::accept(const PathCommand &c) noexcept {
     const auto on_path = [&](auto accept_it) {
         if (!view_.isEnabled || view_.isStopping) {
@@ -285,8 +285,8 @@ bool PathPlanner::areSpindlesReady() const noexcept {
     return (view_.spindles_ready & all) == all;
 }
 
-/// Moves that wait for spindles start once these are at speed; threads at the index of their spindle, so that
-/// every pass begins at the same angle.
+/// Moves that wait for spindles start when these are at speed. Threads start at the index of their spindle,
+/// so that each pass begins at the same angle.
 void PathPlanner::open_gates() noexcept {
     const trajectory::Sequence gate = isPathBegun_ ? planner_.waiting_gate(view_.executor) : 0;
     if (gate != 0 && !pending_.isEmpty() && pending_.newest().indexer >= 0) {
@@ -306,7 +306,7 @@ void PathPlanner::open_gates() noexcept {
         if (std::abs(rps) < SLOWEST_RPS) {
             return;
         }
-        const bool isDriven = planner_.isLocked(gate);  // then the executor finds the start
+        const bool isDriven = planner_.isLocked(gate);  // the executor then determines the start
         const bool isTap = planner_.isTap(gate);
         const bool isKnown = isTap || planner_.isPassKnown(view_.executor);
         if (isDriven && !(isKnown && (isTap ? isTapPossible(gate) : isThreadPossible(gate)))) {
@@ -318,7 +318,7 @@ void PathPlanner::open_gates() noexcept {
     planner_.open_gate(gate, delay_s);
 }
 
-/// A thread that the machine cannot follow is not begun: its pitch would be wrong.
+/// A thread that the machine cannot follow is not started, because its pitch would be wrong.
 bool PathPlanner::isThreadPossible(trajectory::Sequence gate) noexcept {
     constexpr double ROUNDING = 1e-9;
     const double load = planner_.pass_load(gate);
@@ -354,7 +354,7 @@ static_assert(static_cast<int>(trajectory::Overreach::Kind::NO_ANSWER) ==
               static_cast<int>(trajectory::Overreach::Kind::NOT_THERE) ==
                   static_cast<int>(PlannerModuleFault::NOT_THERE));
 
-/// Speeds of a planner module that the machine cannot follow are not driven: the path stops and ends there.
+/// If the machine cannot follow the speeds of a planner module, the path stops and ends there.
 void PathPlanner::tell_overreach(const trajectory::Overreach &overreach) noexcept {
     if (overreach.kind == trajectory::Overreach::Kind::NONE) {
         return;
@@ -369,7 +369,7 @@ void PathPlanner::tell_overreach(const trajectory::Overreach &overreach) noexcep
     channels_.planner_faults.push(fault);
 }
 
-/// Reported once for each gate.
+/// Reports each gate only once.
 void PathPlanner::tell_impossible(trajectory::Sequence gate, FaultKind kind, double value) noexcept {
     if (refused_gate_ == gate) {
         return;
@@ -410,7 +410,7 @@ void PathPlanner::follow_steps() noexcept {
     }
 }
 
-/// Includes the corners, for axes with external offsets and joints that these move.
+/// Includes corners, for axes with external offsets and for joints that these move.
 void PathPlanner::publish_extent() noexcept {
     const PathExtent extent = window_.extent();
     link_.extent.write(extent);

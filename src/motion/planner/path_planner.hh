@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Takes path commands, checks them, plans them, and answers each. Runs below the servo thread, once per
-// period; allocates at construction only.
+// Takes path commands, checks them, plans them, and answers each. Runs in the planner thread once per period;
+// allocates only at construction.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@ struct PathPlannerConfig {
     trajectory::SpeedChooser *chooser = nullptr;  ///< a planner module of a user
 };
 
-/// The inverse of pure kinematics, for the planner. Of several solutions it returns the one on the side of
-/// its last joint positions.
+/// The inverse of pure kinematics for the planner. Among several solutions it returns the one with the
+/// configuration of its last joint positions.
 class KinematicsMap final : public trajectory::JointMap {
   public:
     using Joints = std::array<double, MAX_JOINTS>;
@@ -35,8 +35,8 @@ class KinematicsMap final : public trajectory::JointMap {
         near_ = joints;
         side_ = side;
     }
-    /// The joints at a pose, nearest to those in `joints`; SINGULAR also for a pose that can only be reached
-    /// through a singular one.
+    /// Finds the joints at a pose, nearest to those in `joints`. Also returns SINGULAR for a pose that can be
+    /// reached only through a singular one.
     kinematics::Status find(const geometry::Pose &pose, double *joints) const noexcept {
         const bool isBeyond = side_ != 0 && kinematics_.side(pose) != side_;
         const kinematics::Status status = kinematics_.inverse(pose, joints);
@@ -63,8 +63,8 @@ struct TravelToLimit {
     int axis = -1, joint = -1;           ///< axis or joint of the limit; joint MAX_JOINTS: the kinematics
 };
 
-/// After a rejection or a stop, the remaining path commands of the same epoch are answered STALE until a new
-/// epoch or Enable. A path with a gap is never driven.
+/// After a rejection or a stop, the remaining path commands of the epoch are answered STALE until a new epoch
+/// or Enable. So the machine never follows a path with a gap.
 class PathPlanner {
   public:
     PathPlanner(const PathPlannerConfig &config, const kinematics::Kinematics &kinematics, Channels &channels,
@@ -129,15 +129,15 @@ class PathPlanner {
 
     PathView view_;
     PathLimits limits_;
-    PathWindow window_;                            ///< kept while there are external offsets
+    PathWindow window_;                            ///< used while there are external offsets
     std::array<double, MAX_JOINTS> end_joints_{};  ///< at the end of the last accepted move
     std::uint32_t position_changes_ = 0;           ///< of the limits
     std::uint32_t limits_version_ = 0;
     Epoch epoch_ = 0;
-    bool isBroken_ = false;  ///< the path has a gap: no more commands of this epoch
+    bool isBroken_ = false;  ///< the path has a gap: further commands of this epoch are rejected
     bool isPathBegun_ = false;
     bool isQueueFull_ = false;
-    bool wasLocked_ = false;  ///< the last move follows a spindle's angle
+    bool wasLocked_ = false;  ///< the last move follows the angle of a spindle
     trajectory::Sequence refused_gate_ = 0;
     std::uint64_t drops_ = 0;
     std::uint32_t enables_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Checks path commands, and passes accepted ones to the planner.
+// Checks path commands and passes accepted ones to the planner.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -13,14 +13,14 @@ namespace mw::motion {
 namespace {
 
 constexpr double SOFT_LIMIT_ROUNDING = 1e-6;
-/// An axis that moves by less is treated as stopped [machine units, degrees].
+/// An axis that moves less than this counts as stopped [machine units, degrees].
 constexpr double LEAST_WAY = 1e-9;
 
 bool isFinite(const geometry::Pose &p) noexcept {
     return std::all_of(p.c.begin(), p.c.end(), [](double x) { return std::isfinite(x); });
 }
 
-/// Reason why a move is not possible under these conditions.
+/// Reason why a move is not possible with these settings.
 Reason check_terms(const MoveTerms &terms, int num_spindles) noexcept {
     const bool areNumbers = std::isfinite(terms.feed) && std::isfinite(terms.tolerance) &&
                             std::isfinite(terms.naivecam_tolerance) && std::isfinite(terms.corner_scale) &&
@@ -43,7 +43,7 @@ MotionType type_of(const PathBody &body, const MoveTerms &terms) noexcept {
     return std::holds_alternative<Arc>(body) ? MotionType::ARC : MotionType::FEED;
 }
 
-/// Remaining travel of a line from its end, or from its start with the sense -1, to a soft limit.
+/// Remaining travel to a soft limit, from the end of a line, or from its start if the sense is -1.
 TravelToLimit room_behind(const trajectory::Primitive &line, double sense,
                           const PathLimits &limits) noexcept {
     const geometry::Pose &end = sense > 0 ? line.end : line.start;
@@ -62,7 +62,7 @@ TravelToLimit room_behind(const trajectory::Primitive &line, double sense,
     return room;
 }
 
-/// Travel on a move of joints that external offsets move as well; 0 for other joints.
+/// Travel of joints that external offsets also move; 0 for other joints.
 JointRange shared_extent(const trajectory::Primitive &p, const SharedJoints &shared) noexcept {
     JointRange out;
     for (std::uint32_t left = shared.joints; left != 0; left &= left - 1) {
@@ -91,7 +91,7 @@ trajectory::MoveRequest PathPlanner::request_for(const PathCommand &c,
     r.isOverridable = terms.isFeedOverridable;
     r.feed_per_revolution = terms.feed_per_revolution;
     r.spindle = terms.synch_spindle;
-    // A thread begins with the spindle at speed; feed per revolution follows the current speed.
+    // A thread begins when the spindle is at speed; feed per revolution follows the current speed.
     r.isLocked = terms.isThread();
     const bool isChainStart = r.isLocked && !wasLocked_;
     r.isPhased = isChainStart;
@@ -108,8 +108,8 @@ void PathPlanner::add_pending(const PathCommand &c, const SourceTag &source) noe
     pending_.add(p);
 }
 
-/// Soft limits minus the range of external offsets. The move is published first, so that offsets do not grow
-/// further than it allows.
+/// Soft limits minus the range of external offsets. The move is published first, so that offsets do not use
+/// travel it needs.
 TravelRange PathPlanner::available_travel(const TravelRange &move) noexcept {
     TravelRange room{{limits_.low, limits_.high}, {limits_.joints.low, limits_.joints.high}};
     if (limits_.offset_axes == 0) {
@@ -121,7 +121,7 @@ TravelRange PathPlanner::available_travel(const TravelRange &move) noexcept {
     std::atomic_thread_fence(std::memory_order_seq_cst);
     PoseRange offsets;
     if (!link_.offsets.read(offsets, TRIES)) {
-        return {{room.axes.high, room.axes.low}, {}};  // nothing fits: no servo cycle takes this long
+        return {{room.axes.high, room.axes.low}, {}};  // no range fits; a servo cycle does not take this long
     }
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         const bool isShared = (limits_.offset_axes >> i & 1U) != 0;
@@ -136,7 +136,7 @@ TravelRange PathPlanner::available_travel(const TravelRange &move) noexcept {
     return room;
 }
 
-/// Soft limits over the whole extent, joints where they are not axes.
+/// Checks soft limits over the whole move, and joint limits if joints are not axes.
 Reason PathPlanner::check_reach(const trajectory::Primitive &p, int indexer) noexcept {
     geometry::Pose low;
     geometry::Pose high;
@@ -157,7 +157,7 @@ Reason PathPlanner::check_reach(const trajectory::Primitive &p, int indexer) noe
         if (isMoving && lock >= 0 && lock != indexer) {
             return Reason::INDEXER_ALONE;
         }
-        // A move from outside back inside is accepted if its end is inside.
+        // A move from outside the limits is accepted if it ends inside.
         const double from = p.start[i];
         const bool isLow = low[i] < std::min(room.low[i], from) - SOFT_LIMIT_ROUNDING ||
                            p.end[i] < room.low[i] - SOFT_LIMIT_ROUNDING;
@@ -173,7 +173,7 @@ Reason PathPlanner::check_reach(const trajectory::Primitive &p, int indexer) noe
     return reason == Reason::NONE ? check_shared(p, joints, reach.joints) : reason;
 }
 
-/// On an arc a joint can exceed the positions that check_joints() samples. Shared joints are checked exactly.
+/// On an arc a joint can exceed the positions sampled by check_joints(). Shared joints are checked exactly.
 Reason PathPlanner::check_shared(const trajectory::Primitive &p, const JointRange &move,
                                  const JointRange &room) noexcept {
     const JointRange start = limits_.shared.at(p.start);
@@ -189,13 +189,13 @@ Reason PathPlanner::check_shared(const trajectory::Primitive &p, const JointRang
     return Reason::NONE;
 }
 
-/// True when the joints can follow from one point of the path to the next: halves the distance until the
-/// joints change little, or so fast that the path would crawl. Joints that jump at a singular pose do so on
-/// any distance.
+/// True if the joints can move from one point of the path to the next. Halves the distance until the joints
+/// change little, or until they would have to move so fast that the path would crawl. Joints that jump at a
+/// singular pose do so at any distance.
 bool PathPlanner::isSteady(const trajectory::Primitive &p, PathSample from, PathSample to) const noexcept {
     constexpr double MUCH = 30;  // [machine units, degrees]
     constexpr double LITTLE = 1;
-    constexpr double SLOWEST = 0.005;  // of the speed of the machine
+    constexpr double SLOWEST = 0.005;  // as a fraction of the speed of the machine
     constexpr int HALVINGS = 40;
     const double wish = limits_.limits.velocity.back();
     const double slowest = wish < trajectory::UNLIMITED ? SLOWEST * wish : 0.0;
@@ -228,7 +228,7 @@ bool PathPlanner::isSteady(const trajectory::Primitive &p, PathSample from, Path
 }
 
 Reason PathPlanner::check_joints(const trajectory::Primitive &p, const JointRange &room) noexcept {
-    // Enough that an angle on a circle never changes by half a revolution between two samples.
+    // Sufficient for an angle on a circle not to change by half a revolution between samples.
     constexpr int LEAST_SAMPLES = 64;
     constexpr double SAMPLES_PER_RAD = 1.5;
     constexpr double MOST_SAMPLES = 20000;
@@ -250,8 +250,8 @@ Reason PathPlanner::check_joints(const trajectory::Primitive &p, const JointRang
         const bool isOnTheWay = n < samples;
         for (int j = 0; j < config_.num_joints; ++j) {
             const auto i = static_cast<std::size_t>(j);
-            // A joint outside its limit, for instance after its drive was off, may come back but not go
-            // further out.
+            // A joint outside its limit, for instance after its drive was off, may move back but not further
+            // out.
             const double low = isOnTheWay ? std::min(room.low[i], begin[i]) : room.low[i];
             const double high = isOnTheWay ? std::max(room.high[i], begin[i]) : room.high[i];
             if (here.joints[i] < low - SOFT_LIMIT_ROUNDING || here.joints[i] > high + SOFT_LIMIT_ROUNDING) {
@@ -265,7 +265,7 @@ Reason PathPlanner::check_joints(const trajectory::Primitive &p, const JointRang
     return Reason::NONE;
 }
 
-/// The part of the travel past an end of a line that the joints can follow. They are at `joints` there;
+/// The travel past an end of a line that the joints can follow. `joints`: their positions at that end;
 /// `turn`: travel per spindle revolution.
 TravelToLimit PathPlanner::room_for_joints(const trajectory::Primitive &line, double sense,
                                            const TravelToLimit &axes, std::array<double, MAX_JOINTS> joints,
@@ -330,7 +330,7 @@ Reason PathPlanner::accept_line(const PathCommand &c, const geometry::Pose &end,
     }
     if (p.length > 1e-12 * (1.0 + geometry::norm(end))) {
         trajectory::MoveRequest request = request_for(c, terms);
-        if (indexer >= 0) {  // it comes alone, like a probe, and waits at its gate until it is unlocked
+        if (indexer >= 0) {  // it is sent alone, like a probe, and waits at its gate until it is unlocked
             request.join = PathMode::EXACT_STOP;
             request.isGated = true;
             request.tag.type = static_cast<std::uint8_t>(MotionType::INDEX_ROTARY);
@@ -368,7 +368,7 @@ Reason PathPlanner::accept_arc(const PathCommand &c, const Arc &arc) noexcept {
     return Reason::NONE;
 }
 
-/// In with the spindle and out again: two moves that the executor drives as one.
+/// The moves in and out are two moves that the executor drives as one.
 Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexcept {
     Reason reason = isFinite(tap.end) && std::isfinite(tap.pitch_scale)
                         ? check_terms(tap.terms, config_.num_spindles)
@@ -377,12 +377,12 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
         return reason;
     }
     if (kinematics_.identity() == nullptr && !kinematics_.isShareable()) {
-        return Reason::RIGID_TAPPING;  // the joints' motion cannot be predicted in time
+        return Reason::RIGID_TAPPING;  // the motion of the joints cannot be calculated in advance
     }
     const trajectory::Primitive in = trajectory::make_line(planner_.end(), tap.end);
     const bool isLine = in.length > 1e-12 * (1.0 + geometry::norm(tap.end));
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        // Both ends would need clearance for the reversal that offsets never use.
+        // Both ends would need clearance for the reversal that external offsets never use.
         if (in.lin[i] != 0 && ((limits_.offset_axes | limits_.shared.axes) >> i & 1U) != 0) {
             refused_index_ = static_cast<std::int16_t>(i);
             return Reason::TAP_OFFSET;
@@ -431,8 +431,8 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     return Reason::NONE;
 }
 
-/// A probe comes alone: it waits until earlier moves are complete, and later ones wait for it. A probe that
-/// need not trip may begin in its target state: the first cycle of the move then ends it.
+/// A probe is sent alone: it waits until earlier moves have completed, and later moves wait for it. A probe
+/// that need not trip may begin in its target state: its first cycle then ends it.
 Reason PathPlanner::accept_probe(const PathCommand &c, const Probe &probe) noexcept {
     if (probe.mustTrip && view_.isProbeClosed != probe.isAway) {
         return probe.isAway ? Reason::PROBE_ALREADY_OPEN : Reason::PROBE_ALREADY_TRIPPED;

@@ -7,14 +7,14 @@
 
 namespace mw::motion {
 
-/// Two sets of moves: when the older one is driven, the newer one replaces it, so that the range of a long
-/// program does not contain moves that are long complete.
+/// Two sets of moves. When the older set has been executed, the newer one replaces it, so that the range of a
+/// long program does not contain old moves.
 class PathWindow {
   public:
     static constexpr int MOVES_PER_LOT = 64;
 
     void clear() noexcept { *this = {}; }
-    /// `move` is the last one before the added moves.
+    /// `move` is the last move before the added ones.
     void add(const TravelRange &range, trajectory::Sequence move) noexcept {
         Lot &lot = count_ == 0 ? older_ : newer_;
         widen(lot, range);

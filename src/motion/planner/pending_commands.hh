@@ -17,7 +17,7 @@ struct PendingCommand {
     Epoch epoch = 0;
     bool isFlush = false, isProbe = false, isTripRequired = false, isAwayProbe = false;
     int indexer = -1;        ///< joint that is unlocked for it
-    bool isIndexed = false;  ///< its move is complete, and the joint is to lock
+    bool isIndexed = false;  ///< its move has completed, and the joint must lock
 };
 
 /// Planner thread only. The caller checks size() before it adds.

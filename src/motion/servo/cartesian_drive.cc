@@ -33,7 +33,7 @@ void command_pose(ControllerParts &parts, const geometry::Pose &pose) noexcept {
     const PerJoint here = parts.joints.commanded();
     PerJoint positions = here;
     if (!isAnswered(model.kinematics().inverse(pose, positions.data()))) [[unlikely]] {
-        // The planner avoids such poses; if one comes, no valid command is possible.
+        // The planner avoids such poses. If one occurs, no valid command is possible.
         parts.stop_category_0(FaultKind::KINEMATICS_FAILED, -1);
         return;
     }

@@ -16,7 +16,8 @@ bool isOlder(Epoch epoch, Epoch other) noexcept {
     return static_cast<std::int32_t>(epoch - other) < 0;
 }
 
-/// Reverse run ends at a stop, and where the spindle changed its direction, stopped or got another tool.
+/// Reverse run ends at a stop, and at a position where the spindle changed direction, stopped or got another
+/// tool.
 void limit_reverse_run(Retracing &retracing, const CommandBody &body) noexcept {
     const bool isChange =
         std::holds_alternative<SpindleOn>(body) || std::holds_alternative<SpindleOff>(body) ||
@@ -40,7 +41,7 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
     return parts.jogs.take(command, situations.data());
 }
 
-/// Every command has a handler here; a missing one does not compile.
+/// Every command must have a handler here; otherwise it does not compile.
 [[gnu::cold]] CommandResult dispatch(ControllerParts &parts, SafetyMonitor &safety, const Inputs &in,
                                      const CommandBody &body) noexcept {
     const bool isEnabled = parts.power.isEnabled();
@@ -75,7 +76,7 @@ CommandResult take(ControllerParts &parts, const SetTeleopVector &command, const
         [&](const OneOf<SpindleOn, SpindleOrient> auto &c) { return parts.spindles.take(c, isEnabled); },
         [&](const OneOf<SpindleOff, SpindleBrake> auto &c) { return parts.spindles.take(c); },
         [&](const OneOf<SetDigitalOutput, SetAnalogOutput> auto &c) { return parts.outputs.take(c); },
-        [](const SetToolOffset &c) { return check(c); },  // it only limits reverse run
+        [](const SetToolOffset &c) { return check(c); },  // only limits reverse run
         [&](const ClearProbeFlag &c) { return parts.probe.take(c); },
     };
     return std::visit(handlers, body);
@@ -87,7 +88,7 @@ void CommandDispatcher::handle_commands(ControllerParts &parts, SafetyMonitor &s
                                         const Inputs &in) noexcept {
     Channels &channels = *parts.channels;
     for (int n = 0; n < MAX_COMMANDS_PER_CYCLE; ++n) {
-        // A command is taken only when its answer fits into the queue.
+        // A command is read only if its answer fits into the queue.
         const bool isRoom = channels.servo_answers.size() < channels.servo_answers.capacity();
         const Command *command = isRoom ? channels.immediate.front() : nullptr;
         if (command == nullptr) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Takes immediate commands from their channel, passes each to its part, and answers it.
+// Reads immediate commands from their channel, passes each to its part, and answers it.
 #pragma once
 
 #include "motion/servo/parts.hh"
@@ -14,7 +14,7 @@ class CommandDispatcher {
     [[gnu::hot]] void handle_commands(ControllerParts &parts, SafetyMonitor &safety,
                                       const Inputs &in) noexcept;
     Epoch epoch() const noexcept { return epoch_; }
-    /// Of the last command that was answered.
+    /// The last command that was answered.
     CommandId last_id() const noexcept { return last_id_; }
 
     static constexpr int MAX_COMMANDS_PER_CYCLE = 64;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The stages of a servo cycle. [[likely]] and [[unlikely]] here, in the stages and in the parts mark the path
-// of a cycle without events: between two cycles the processor loses its branch predictions, and each branch
-// that is taken costs as much as a dozen instructions (docs/developer/performance.md). Functions of that path
-// are hot, those of events cold. The linker groups each type, so that a cycle touches fewer pages and cache
-// lines of the module.
+// of a cycle without events. Between two cycles the processor loses its branch predictions, and each taken
+// branch costs as much as a dozen instructions (docs/developer/performance.md). Functions on that path are
+// hot, those for events cold. The linker groups them, so that a cycle uses fewer pages and cache lines of the
+// module.
 #include "motion/servo/controller.hh"
 
 #include "motion/servo/compensation.hh"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The motion controller: takes commands and calculates the position of each joint every servo cycle. Pure: no
-// HAL, no clock, no allocation. All of it runs in the servo thread.
+// The motion controller: takes commands and calculates the position of each joint in every servo cycle. Pure:
+// no HAL, no clock, no allocation. Runs in the servo thread.
 #pragma once
 
 #include "motion/servo/command_dispatcher.hh"
@@ -10,13 +10,13 @@
 
 namespace mw::motion {
 
-/// Owns the parts of the machine and runs the stages of a servo cycle on them. Some megabytes, so never on a
-/// stack.
+/// Owns the parts of the machine and runs the stages of a servo cycle. Its size is some megabytes, so it is
+/// never on a stack.
 class Controller {
   public:
     Controller(const ControllerConfig &config, const kinematics::Kinematics &kinematics, Channels &channels,
                PathLink &link) noexcept;
-    /// Continues the state of `other` on separate channels; `link` is a copy of the other's.
+    /// Continues the state of `other` on separate channels; `link` is a copy of the link of `other`.
     Controller(const Controller &other, Channels &channels, PathLink &link) noexcept;
     Controller(const Controller &) = delete;
     Controller &operator=(const Controller &) = delete;

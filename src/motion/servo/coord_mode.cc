@@ -27,7 +27,7 @@ geometry::Pose path_pose(ControllerParts &parts) noexcept {
     if (path.tap.isLost) [[unlikely]] {
         parts.stop_category_1(FaultKind::TAP_LOST, path.tap.spindle);
     }
-    // A path that has ended keeps its position: a program that waits relies on it.
+    // A path that has ended keeps its position. Programs that wait rely on it.
     const bool isPathHeld = executor.isAtRest() && !executor.isEmpty();
     const RetraceInputs in{executor.snapshot().drops,
                            holds.isReverseWanted(),
@@ -58,8 +58,8 @@ TravelRange path_range(const PathLink &link, const geometry::Pose &pose,
     return out;
 }
 
-/// If the planner cannot call this kinematics module, joint limits are checked here and a violation stops the
-/// machine.
+/// If the planner cannot call this kinematics module, joint limits are checked here, and a violation stops
+/// the machine.
 void check_joint_limits(ControllerParts &parts) noexcept {
     const bool isPlanned = parts.model.map().kind != AxisMap::Kind::UNKNOWN;
     const Overrun overrun =
@@ -70,15 +70,15 @@ void check_joint_limits(ControllerParts &parts) noexcept {
     }
 }
 
-/// Keeps the path for reverse run as far back as it may be driven.
+/// Keeps the recorded path as far back as reverse run may go.
 void update_recorded_path(ControllerParts &parts, const geometry::Pose &pose) noexcept {
     if (parts.retracing.isAway()) {
         return;
     }
-    // Reverse run does not pass a tapped hole or a thread without the spindle in step, nor a lock.
+    // Reverse run does not pass a tapped hole or a thread without synchronization, nor a lock.
     const bool isOneWay = parts.executor.output().tap.spindle >= 0 || parts.executor.locked_spindle() >= 0 ||
                           parts.indexers.busy() != 0;
-    // External offsets are not part of the recorded path, so it is recorded only where it is needed.
+    // External offsets are not part of the recorded path, so it is recorded only if needed.
     const bool isWanted = parts.holds.isAdaptiveFeedEnabled() || parts.offsets.isEmpty();
     if (isWanted && !isOneWay) {
         record_path(parts, pose);
@@ -105,7 +105,7 @@ void CoordMode::step(ControllerParts &parts, const Inputs &in) const noexcept {
     }
     check_probe(parts, in);
     command_pose(parts, target);
-    if (parts.power.mode() == Mode::COORD) [[likely]] {  // a stop may have left it
+    if (parts.power.mode() == Mode::COORD) [[likely]] {  // a stop may have changed the mode
         const bool areJointsAxes = parts.model.map().areJointsAxes();
         if (!areJointsAxes && parts.joint_start.hasDropped(parts.executor.snapshot())) [[unlikely]] {
             parts.publish_joint_start();
@@ -124,7 +124,7 @@ JogGroup CoordMode::jog_group(const ControllerParts &) const noexcept {
     return {};
 }
 
-/// Requests of the planner for a path that was dropped are ignored.
+/// Requests of the planner for a dropped path are ignored.
 std::uint32_t CoordMode::locks_wanted(const ControllerParts &parts) const noexcept {
     const std::uint64_t request = parts.link->indexers_wanted.load(std::memory_order_acquire);
     const bool isOfPath = static_cast<std::uint32_t>(request >> 32) ==

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// First stage of a servo cycle: measured positions of joints, pose and spindles.
+// First stage of a servo cycle: measures positions of joints, pose and spindles.
 #pragma once
 
 #include <cstdint>

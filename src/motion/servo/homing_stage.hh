@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Homing in a servo cycle: starts it, commands its joints, reports its failures, and takes over new homes.
+// Homing in a servo cycle: starts it, commands the joints, reports failures, and applies new home positions.
 #pragma once
 
 #include "motion/servo/parts.hh"

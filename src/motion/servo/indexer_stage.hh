@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Locking indexers in a servo cycle: a jog or move of an indexer waits here for its lock.
+// Locking indexers in a servo cycle: a jog or move of an indexer waits for its lock.
 #pragma once
 
 #include "motion/servo/parts.hh"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Inputs and outputs of the controller in each servo cycle; the HAL adapter and the tests write and read
-// them.
+// Inputs and outputs of the controller in a servo cycle. The HAL adapter and tests use them.
 #pragma once
 
 #include <array>
@@ -12,7 +11,7 @@
 
 namespace mw::motion {
 
-/// A hand wheel: counts that become distance.
+/// A hand wheel: counts are converted to distance.
 struct WheelInput {
     std::int32_t counts = 0;
     double scale = 0;           ///< [unit per count]
@@ -21,7 +20,7 @@ struct WheelInput {
     bool isVelocityMode = false;
 };
 
-/// Counts that become an offset of an axis.
+/// Counts that are converted to an axis offset.
 struct OffsetInput {
     std::int32_t counts = 0;
     double scale = 0;  ///< [unit per count]
@@ -48,7 +47,7 @@ struct SpindleInputs {
 struct Inputs {
     std::int64_t time_ns = 0;
     std::uint32_t lost_positions =
-        0;                   ///< events after which the positions of a driver are not those of the machine
+        0;                   ///< number of events after which a driver's positions do not match the machine
     bool isEnableOn = true;  ///< motion.enable
     bool isProbeClosed = false;
     bool isFeedHeld = false, isFeedInhibited = false;
@@ -65,7 +64,7 @@ struct Inputs {
     std::array<SpindleInputs, MAX_SPINDLES> spindle{};
 };
 
-/// Pin values of a joint that seldom change: they are compared before they are written.
+/// Pin values of a joint that seldom change; compared before they are written.
 struct SeldomJointOutputs {
     double backlash_raw = 0, backlash_filtered = 0, backlash_velocity = 0;
     double motor_offset = 0;
@@ -95,7 +94,7 @@ struct AxisOutputs : SeldomAxisOutputs {
 };
 
 struct SpindleOutputs {
-    double speed_rpm = 0;  ///< signed, scale and limits applied
+    double speed_rpm = 0;  ///< signed; after scale and limits
     bool isOn = false, isForward = false, isReverse = false, isBrakeOn = false;
     bool isOrienting = false, isLocked = false;
     double orient_angle = 0;
@@ -112,8 +111,9 @@ inline constexpr PartMask SELDOM_PARTS = part_range(status_part::AXES, 1) |
 
 struct Outputs {
     Status status;
-    PartMask touched = SELDOM_PARTS;  ///< of these, parts that may differ from the last publication
-    std::uint32_t axes = ALL_AXES;    ///< bit per axis that the machine may have: pins of others are not read
+    PartMask touched = SELDOM_PARTS;  ///< the parts of SELDOM_PARTS that may differ from the last publication
+    std::uint32_t axes =
+        ALL_AXES;  ///< bit per axis that the machine may have; pins of other axes are not read
     std::array<JointOutputs, MAX_JOINTS> joint{};
     std::array<AxisOutputs, MAX_AXES> axis{};
     std::array<SpindleOutputs, MAX_SPINDLES> spindle{};
@@ -121,10 +121,10 @@ struct Outputs {
     bool isJogging = false;
     bool isCoordError = false, isOnSoftLimit = false;
     double mm_per_unit = 1;
-    bool isHomingQuiet = true;           ///< the homing outputs have their values without homing
-    bool areJogsQuiet = false;           ///< the jog outputs have their values without a jog
-    bool areOffsetsQuiet = false;        ///< no axis has an external offset, and the outputs show it
-    std::uint32_t settings_version = 0;  ///< Settings::version() that `status` and mm_per_unit follow
+    bool isHomingQuiet = true;           ///< homing outputs have their inactive values
+    bool areJogsQuiet = false;           ///< jog outputs have their inactive values
+    bool areOffsetsQuiet = false;        ///< no axis has an external offset, and the outputs are 0
+    std::uint32_t settings_version = 0;  ///< Settings::version() of `status` and mm_per_unit
     bool isOffsetActive = false, isOffsetLimited = false;
 };
 

@@ -6,7 +6,7 @@
 namespace mw::motion {
 namespace {
 
-/// An indexer is jogged only while nothing else moves, and nothing else moves meanwhile.
+/// An indexer is jogged only while nothing else moves, and nothing else moves while it is jogged.
 bool isBesideIndexer(const ControllerParts &parts, const JogTarget &target) noexcept {
     const FoldedLimits &limits = parts.model.limits();
     const std::uint32_t own = limits.locks_of(target);
@@ -72,7 +72,7 @@ void keep_jogs_within_limits(ControllerParts &parts) noexcept {
     }
 }
 
-/// Jogs whose lease is not renewed stop here, also if task and client have ended.
+/// Jogs whose lease is not renewed stop, also if task and client have ended.
 void step_jogs(ControllerParts &parts, const Inputs &in) noexcept {
     Jogs &jogs = parts.jogs;
     for (JogTarget over = jogs.end_lease(in.time_ns); over.index >= 0; over = jogs.end_lease(in.time_ns)) {

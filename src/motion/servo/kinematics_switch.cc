@@ -6,7 +6,7 @@
 namespace mw::motion {
 namespace {
 
-/// The joints are stopped and get the pose of the new type. If the type has no pose for them, the old one
+/// The joints are stopped. They get the pose of the new type. If the type has no pose for them, the old type
 /// stays.
 [[gnu::cold]] void switch_type(ControllerParts &parts, kinematics::TypeSwitch &types) noexcept {
     const kinematics::Kinematics &kinematics = parts.model.kinematics();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of several types: activates the type that motion.switchkins-type selects.
+// Activates the kinematics type that motion.switchkins-type selects.
 #pragma once
 
 #include "motion/servo/parts.hh"
 
 namespace mw::motion {
 
-/// One cycle: changes the type once nothing moves and no path waits.
+/// One cycle: changes the type when nothing moves and no path waits.
 [[gnu::hot]] void step_kinematics_type(ControllerParts &parts, const Inputs &in) noexcept;
 
 }  // namespace mw::motion

@@ -10,7 +10,7 @@
 namespace mw::motion {
 namespace {
 
-/// Parts that depend on a setting take its new value.
+/// Passes the new value to the parts that depend on the setting.
 void apply(ControllerParts &parts, const SetParameter &command) noexcept {
     const Settings &settings = parts.model.settings();
     if (PARAMETERS[command.parameter].scope == ParameterScope::JOINT) {
@@ -102,7 +102,7 @@ CommandResult take(ControllerParts &parts, const SetNumJoints &command, const In
     const int loaded = parts.joints.loaded();
     const kinematics::IdentityMap *identity = parts.model.kinematics().identity();
     const int least = identity != nullptr ? std::min(identity->num_joints, loaded) : 1;
-    const int needed = parts.extra.count() > 0 ? loaded : least;  // extra joints are the last ones
+    const int needed = parts.extra.count() > 0 ? loaded : least;  // extra joints are the last joints
     if (parts.power.isEnabled()) {
         return {Reason::SWITCHED_ON};
     }
@@ -125,7 +125,7 @@ CommandResult take(ControllerParts &parts, const SetJointActive &command) noexce
     const bool areAlone = !parts.power.isEnabled() || parts.power.mode() == Mode::FREE;
     const CommandResult result =
         parts.joints.take(command, {isAnythingMoving(parts), parts.homing.isUnderWay(), areAlone});
-    if (areAlone) {  // the pose is that of all joints from here, also for the next command
+    if (areAlone) {  // the pose is now that of all joints, also for the next command
         const kinematics::Kinematics &kinematics = parts.model.kinematics();
         const bool isKnown = kinematics.kind() == kinematics::Kind::BOTH && parts.homing.isAllHomed();
         parts.position.follow_joints(kinematics, parts.joints.commanded().data(), isKnown);

@@ -9,13 +9,13 @@ namespace mw::motion {
 CommandResult take(ControllerParts &parts, const Enable &command, const Inputs &in) noexcept;
 CommandResult take(ControllerParts &parts, const SetMode &command) noexcept;
 CommandResult take(ControllerParts &parts, const SetParameter &command) noexcept;
-/// A joint that is taken out of use is not homed when it is used again; its position is then that of its
-/// motor.
+/// A joint that is taken out of use is unhomed when it is used again; its position is then its motor
+/// position.
 CommandResult take(ControllerParts &parts, const SetNumJoints &command, const Inputs &in) noexcept;
 CommandResult take(ControllerParts &parts, const SetJointActive &command) noexcept;
 CommandResult take(ControllerParts &parts, const Home &command, const Inputs &in) noexcept;
 CommandResult take(ControllerParts &parts, const Unhome &command) noexcept;
-/// The epoch is the dispatcher's.
+/// The dispatcher changes the epoch.
 CommandResult take(ControllerParts &parts, const Abort &command) noexcept;
 
 }  // namespace mw::motion

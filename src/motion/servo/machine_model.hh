@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The machine as it is set up: joints in use, kinematics, settings, and the limits that follow from them.
+// The configured machine: joints in use, kinematics, settings, and the resulting limits.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace mw::motion {
 
-/// Its limits always follow from the settings, the joints in use and the homed joints of the last fold().
+/// The limits always follow from the settings, the joints in use and the homed joints of the last fold().
 class MachineModel {
   public:
     /// `kinematics` outlives it.
@@ -33,14 +33,14 @@ class MachineModel {
     /// Counts changes of limits().
     std::uint32_t limits_version() const noexcept { return limits_version_; }
 
-    /// The first `count` joints are in use. fold() must follow.
+    /// Uses the first `count` joints. fold() must follow.
     void use_joints(int count) noexcept;
     /// fold() must follow.
     Reason set(const SetParameter &command) noexcept;
     /// Calculates the limits again.
     void fold(const HomedJoints &homed) noexcept;
 
-    /// Limits of the joints that a pose moves, in a servo cycle.
+    /// Limits per servo cycle of the joints that a pose moves.
     JointStepLimit joint_step_limit() const noexcept {
         return {limits_.joints.velocity.data(), config_.period_s, config_.num_pose_joints()};
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The modes of motion behind one interface: free (single joints), teleop (axes) and coord (the path).
+// The interface of the modes of motion: free (single joints), teleop (axes) and coord (path).
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace mw::motion {
 
-/// Joints or axes that jogs and wheels move: the first `count` of them.
+/// The first `count` joints or axes, which jogs and wheels move.
 struct JogGroup {
     bool areJoints = false;
     int count = 0;
 };
 
-/// Modes have no state: they command the joints with the parts.
+/// Modes have no state: they command the joints through the parts.
 class MotionMode {
   public:
     /// Prepares the joints at standstill, or rejects the mode.
     [[gnu::cold]] virtual CommandResult enter(ControllerParts &parts) const noexcept = 0;
     /// One cycle while the machine is on: commands the joints.
     [[gnu::hot]] virtual void step(ControllerParts &parts, const Inputs &in) const noexcept = 0;
-    /// Joints or axes move in jogs of this mode.
+    /// True if joints or axes are jogged in this mode.
     virtual bool isJogging(const ControllerParts &parts) const noexcept = 0;
     virtual JogGroup jog_group(const ControllerParts &parts) const noexcept = 0;
     /// Bit per joint whose lock must be open for the moves of this mode.
@@ -63,8 +63,8 @@ class CoordMode final : public MotionMode {
 
 [[gnu::hot]] const MotionMode &motion_mode(Mode mode) noexcept;
 
-/// A jog, the path, reverse run or the alignment of gantry joints moves; external offsets and extra joints do
-/// not count.
+/// True if a jog, the path, reverse run or the alignment of gantry joints moves. External offsets and extra
+/// joints do not count.
 [[gnu::hot]] bool isAnythingMoving(const ControllerParts &parts) noexcept;
 
 }  // namespace mw::motion

@@ -12,7 +12,7 @@ ControllerParts::ControllerParts(const ControllerConfig &config, const kinematic
       homing(config.period_s, config.homing), spindles(config.num_spindles),
       outputs(config.num_dio, config.num_aio), executor(link_used.store, config.period_s) {
     use_joints(config.num_joints);
-    jogs.set_axes(model.limits().axes);  // there are never more joints than now
+    jogs.set_axes(model.limits().axes);  // the number of joints never grows after this
     const kinematics::IdentityMap *identity = kinematics.identity();
     const int count = config.num_pose_joints();
     for (int j = identity != nullptr ? identity->num_joints : count; j < count; ++j) {
@@ -53,7 +53,8 @@ void ControllerParts::raise(FaultKind kind, int index, double value, std::uint16
     if (const trajectory::MoveTag *tag = active_move()) {
         fault.source = {tag->line, tag->file_index, tag->block};
     }
-    channels->servo_faults.push(fault);  // a full ring: the first faults are the important ones
+    channels->servo_faults.push(
+        fault);  // if the ring is full, the first faults are kept, which are the important ones
 }
 
 void ControllerParts::stop_category_0(FaultKind kind, int index, double value) noexcept {

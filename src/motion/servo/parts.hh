@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The parts of the controller, and what concerns several of them: faults, stops, and what the path planner
-// must know. The stages of a servo cycle pass to each part what it needs of the others.
+// The parts of the controller, and functions that concern several of them: faults, stops, and data for the
+// path planner. The stages of a servo cycle pass data between the parts.
 #pragma once
 
 #include <cstdint>
@@ -31,12 +31,12 @@
 
 namespace mw::motion {
 
-/// All values, so that a controller can be cloned in the middle of a move. Some megabytes, so never on a
-/// stack.
+/// Contains only values, so that a controller can be cloned during a move. Its size is some megabytes, so it
+/// is never on a stack.
 struct ControllerParts {
     ControllerParts(const ControllerConfig &config, const kinematics::Kinematics &kinematics,
                     Channels &channels, PathLink &link) noexcept;
-    /// Continues the state of `other` on separate channels; `link` is a copy of the other's.
+    /// Continues the state of `other` on separate channels; `link` is a copy of the link of `other`.
     ControllerParts(const ControllerParts &other, Channels &channels, PathLink &link) noexcept;
     ControllerParts &operator=(const ControllerParts &) = delete;
 
@@ -48,28 +48,28 @@ struct ControllerParts {
     /// Stop category 0: reports the fault and switches the amplifiers off in this cycle.
     [[gnu::cold]] void stop_category_0(FaultKind kind, int index, double value = 0) noexcept;
     /// Stop category 1: everything brakes within its limits; the amplifiers go off in the cycle after
-    /// standstill. Reports the fault, if no stop is active already.
+    /// standstill. Reports the fault if no stop is active.
     [[gnu::cold]] void stop_category_1(FaultKind kind, int index, double value = 0) noexcept;
-    /// All motion brakes within its limits, except that of external offsets.
+    /// Brakes all motion within its limits, except external offsets.
     [[gnu::cold]] void brake() noexcept;
     [[gnu::cold]] void switch_off() noexcept;
-    /// Free mode while off, if joints that the kinematics needs have lost their homes: the joint positions of
-    /// a pose are unknown.
+    /// Selects free mode while off, if joints that the kinematics needs have lost their home: the joint
+    /// positions of a pose are then unknown.
     [[gnu::cold]] void leave_unknown_pose() noexcept;
 
-    /// The move that the path is executing; nullptr for none.
+    /// The move that the path executes; nullptr for none.
     const trajectory::MoveTag *active_move() const noexcept;
     /// Commanded pose without external offsets.
     geometry::Pose programmed_pose() const noexcept { return offsets.remove_from(position.cmd()); }
 
-    /// Prepares a mode in which the pose commands the joints. They must be at its joint positions, except for
-    /// a small difference that the alignment removes.
+    /// Prepares a mode in which the pose commands the joints. They must be at their positions in the pose,
+    /// except for a small difference that the alignment removes.
     [[gnu::cold]] CommandResult align_joints() noexcept;
     /// Drops the path; the next one begins at `pose`.
     [[gnu::cold]] void restart_path(const geometry::Pose &pose) noexcept;
-    /// Folds the limits and passes them to the path planner.
+    /// Combines the limits and passes them to the path planner.
     [[gnu::cold]] void publish_limits() noexcept;
-    /// Passes the joint positions to the path planner: they decide the side of elbows and wrists.
+    /// Passes the joint positions to the path planner; they select the configuration of elbows and wrists.
     [[gnu::cold]] void publish_joint_start() noexcept;
 
     Channels *channels;
@@ -93,10 +93,10 @@ struct ControllerParts {
     Indexers indexers;
     trajectory::Executor executor;
     Retracing retracing;
-    bool coord_error = false;  ///< the path was stopped by an error
+    bool coord_error = false;  ///< an error stopped the path
 
   private:
-    /// Copies channels and link as well, so only for making a clone.
+    /// Also copies channels and link, so only for cloning.
     ControllerParts(const ControllerParts &other) noexcept = default;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A probing move ends where the probe trips; in any other move a trip is a fault.
+// Ends a probing move where the probe trips; in any other move a trip is a fault.
 #pragma once
 
 #include "motion/servo/parts.hh"

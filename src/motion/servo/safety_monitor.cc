@@ -6,7 +6,7 @@
 namespace mw::motion {
 namespace {
 
-/// Which checks do not apply to which joints.
+/// Selects the joints to which each check applies.
 JointCheck joint_check(const ControllerParts &parts, const Inputs &in) noexcept {
     const HomingDrive &homing = parts.homing;
     JointCheck how;
@@ -22,7 +22,7 @@ JointCheck joint_check(const ControllerParts &parts, const Inputs &in) noexcept 
     return how;
 }
 
-/// Amplifier, following error and limit switches of each joint.
+/// Checks amplifier, following error and limit switches of each joint.
 void check_joints(ControllerParts &parts, const Inputs &in) noexcept {
     Joints &joints = parts.joints;
     const JointCheck how = joint_check(parts, in);
@@ -76,7 +76,7 @@ void SafetyMonitor::step(ControllerParts &parts, const Inputs &in, std::uint32_t
     }
 }
 
-/// The feedback is no longer that of the machine: braking to a position would be wrong, too.
+/// The feedback does not match the machine, so braking to a position would also be wrong.
 void SafetyMonitor::check_positions(ControllerParts &parts, std::uint32_t lost_positions) noexcept {
     if (parts.homing.note_lost_positions(lost_positions)) [[unlikely]] {
         if (parts.power.isEnabled() || parts.homing.homed_joints() != 0) {
@@ -96,7 +96,7 @@ void SafetyMonitor::check_task(ControllerParts &parts) noexcept {
     }
 }
 
-/// Drives and step generators have kept their last command: continuing from there would be a jump.
+/// Drives and step generators have kept their last command, so continuing from there would cause a jump.
 void SafetyMonitor::check_servo_thread(ControllerParts &parts, std::int64_t time_ns) noexcept {
     const double missed_s = watchdog_.gap_s(time_ns);
     if (missed_s > 0 && parts.power.isEnabled()) [[unlikely]] {

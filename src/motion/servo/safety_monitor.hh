@@ -16,7 +16,8 @@ class SafetyMonitor {
     CommandResult take(const Heartbeat &command) noexcept { return watchdog_.take(command); }
     bool isTaskLost() const noexcept { return watchdog_.isTaskLost(); }
 
-    /// After the feedback of the cycle. `spindles_lost`: bit per spindle whose feedback is not a number.
+    /// Called after the feedback of the cycle. `spindles_lost`: bit per spindle whose feedback is not a
+    /// number.
     [[gnu::hot]] void step(ControllerParts &parts, const Inputs &in, std::uint32_t spindles_lost) noexcept;
 
   private:

@@ -9,7 +9,7 @@
 namespace mw::motion {
 namespace {
 
-/// Parts that may differ from the last cycle. Values that seldom change are compared only where they may have
+/// Parts that may differ from the last cycle. Values that seldom change are compared only if they may have
 /// been changed.
 PartMask new_parts(const PublishedStatus &published, Outputs &out) noexcept {
     const Status &s = out.status;
@@ -22,17 +22,17 @@ PartMask new_parts(const PublishedStatus &published, Outputs &out) noexcept {
            part_range(status_part::SPINDLES, s.num_spindles) | seldom;
 }
 
-/// A joint that was loaded and is not in use: it commands nothing to its drive.
+/// A loaded joint that is not in use: its drive gets no command.
 void fill_unused(const JointInputs &in, int j, Outputs &out) noexcept {
     const auto n = static_cast<std::size_t>(j);
     out.status.joint[n] = {};
-    out.settings_version = 0;  // its limits are published again when it is used
+    out.settings_version = 0;  // its limits are published again when it is in use
     out.status.joint[n].motor_pos_fb = in.motor_pos_fb;
     out.joint[n] = {};
     out.joint[n].motor_pos_cmd = in.motor_pos_fb;
 }
 
-/// `sample` gets the values that the status does not contain.
+/// `sample` gets the values that are not in the status.
 void trace(Channels &channels, const Status &s, const Joints &joints, TraceSample &sample) noexcept {
     sample.cycle = s.cycle;
     sample.path_id = s.active_path_id;
@@ -70,7 +70,7 @@ void fill_settings(const Settings &settings, Outputs &out) noexcept {
     out.settings_version = settings.version();
 }
 
-/// Directions keep their values without motion.
+/// Without motion, directions keep their values.
 void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const geometry::Pose &place,
                   Outputs &out) noexcept {
     const Status &s = out.status;
@@ -88,7 +88,7 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
     heading.origin = origin;
 }
 
-/// The executed move and the rest of the path. `programmed`: the position without external offsets.
+/// Writes the executed move and the rest of the path. `programmed`: the position without external offsets.
 [[gnu::hot]] void fill_path(const ControllerParts &parts, const geometry::Pose &programmed,
                             Status &s) noexcept {
     s.queue_depth = parts.link->queue_depth.load(std::memory_order_relaxed);
@@ -119,7 +119,7 @@ void fill_heading(const trajectory::PathStore &store, std::uint64_t move, const 
     s.isProbing = e.isOnProbe;
 }
 
-/// The controller's state for the path planner.
+/// Writes the state of the controller for the path planner.
 [[gnu::hot]] void write_view(const ControllerParts &parts, const StatusInputs &now,
                              const geometry::Pose &programmed) noexcept {
     PathView &v = parts.link->newest;
@@ -193,7 +193,7 @@ void write_status(const ControllerParts &parts, const StatusInputs &now, Outputs
         parts.offsets.fill(out);
     }
     parts.extra.fill(parts.model.limits().homed.joints, out);
-    out.isHomingQuiet = out.isHomingQuiet && parts.indexers.isEmpty();  // they add to its outputs
+    out.isHomingQuiet = out.isHomingQuiet && parts.indexers.isEmpty();  // indexers add to the homing outputs
     parts.homing.fill(out);
     parts.indexers.fill(out);
     parts.spindles.fill(in, parts.power.isEnabled(), out);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Last stage of a servo cycle: the status for all clients, the view of the path planner, and the trace.
+// Last stage of a servo cycle: status for clients, view for the path planner, and trace.
 #pragma once
 
 #include "motion/servo/parts.hh"
 
 namespace mw::motion {
 
-/// What is reported beside the parts.
+/// Data that the parts do not contain.
 struct StatusInputs {
     const Inputs &in;
     Epoch epoch = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Teleop mode: each axis follows its own jog, and the joints follow the pose.
+// Teleop mode: each axis follows its jog, and the joints follow the pose.
 #include <bit>
 
 #include "motion/servo/cartesian_drive.hh"
@@ -9,7 +9,7 @@
 namespace mw::motion {
 namespace {
 
-/// Bit per axis that one of the closed locks holds.
+/// Bit per axis that a closed lock holds.
 std::uint32_t locked_axes(const FoldedLimits &limits, std::uint32_t locked) noexcept {
     std::uint32_t axes = 0;
     for (int i = 0; i < MAX_AXES && locked != 0; ++i) {
@@ -18,7 +18,7 @@ std::uint32_t locked_axes(const FoldedLimits &limits, std::uint32_t locked) noex
     return axes;
 }
 
-/// Where joints are not axes, the joints limit what the axes do together.
+/// If joints are not axes, the joints limit the combined motion of the axes.
 void step_axes_together(ControllerParts &parts, std::uint32_t locked) noexcept {
     const MachineModel &model = parts.model;
     PerJoint joint_positions = parts.joints.commanded();
@@ -69,7 +69,7 @@ TravelRange jogged_range(const Jogs &jogs, const geometry::Pose &pose, const Sha
     PoseRange stops{pose, pose};
     for (int i = 0; i < MAX_AXES; ++i) {
         jogs.at({false, i}).motion().add_reach(out.axes.low[i], out.axes.high[i]);
-        // A jog may need a longer distance to stop when the joints allow it less.
+        // A jog may need a longer stopping distance if the joints permit less.
         constexpr double MARGIN = 1.2;
         stops.low[i] += MARGIN * (out.axes.low[i] - pose[i]);
         stops.high[i] += MARGIN * (out.axes.high[i] - pose[i]);

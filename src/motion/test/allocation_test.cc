@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The servo thread never touches the heap.
+// The servo thread never allocates memory.
 #include <gtest/gtest.h>
 
 #include "kinematics/rotary_table.hh"
@@ -33,7 +33,7 @@ TEST(Allocation, TablesOfScrewErrorsAreLoadedAndFollowedWithoutTheHeap) {
     EXPECT_NEAR(rig.out->joint[0].motor_pos_cmd - rig.status().joint[0].pos_cmd, -0.01, 1e-9);
 }
 
-/// The planner's thread makes the curves, and allocates.
+/// The planner thread makes the curves, and allocates.
 TEST(Allocation, ServoCyclesOfAPathDoNotTouchTheHeap) {
     testing::MotionRig rig;
     rig.ready();

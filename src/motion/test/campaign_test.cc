@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Random programs through path channel, planner, controller and kinematics to the motors of a nine-joint
-// machine, with random pauses, overrides, aborts and planner hiccups: limits at every servo sample, nothing
-// of an old epoch moves, every command answered once, the end exact. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST
-// choose the seeds.
+// machine, with random pauses, overrides, aborts and delays of the planner. Checks the limits at every servo
+// sample, that nothing of an old epoch moves, that every command is answered once, and that the end is exact.
+// MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST select the seeds.
 #include <cstdlib>
 #include <map>
 #include <random>
@@ -154,7 +154,7 @@ class Campaign {
         FAIL() << "the program does not end";
     }
 
-    /// The stop takes no longer than the machine's limits say, and afterwards nothing of the old epoch moves.
+    /// The stop takes no longer than the limits permit, and afterwards nothing of the old epoch moves.
     void abort(testing::LimitChecker &checker) {
         rig_.send(Abort{rig_.epoch + 1});
         geometry::Pose far = rig_.status().carte_pos_cmd;

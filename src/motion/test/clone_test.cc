@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A controller that is saved in the middle of a move continues without a difference.
+// A controller saved in the middle of a move continues identically.
 #include <gtest/gtest.h>
 
 #include "tests/support/motion_rig.hh"
@@ -9,7 +9,7 @@ namespace {
 
 using testing::MotionRig;
 
-/// A copy on separate channels, with drives that follow as those of the rig do. It has no planner.
+/// A copy on separate channels, with drives that follow like those of the rig. It has no planner.
 struct Clone {
     std::unique_ptr<Channels> channels = std::make_unique_for_overwrite<Channels>();
     std::unique_ptr<PathLink> link;
@@ -49,7 +49,7 @@ void expect_same(const Outputs &one, const Outputs &other) {
     ASSERT_EQ(one.spindle[0].speed_rpm, other.spindle[0].speed_rpm);
 }
 
-/// Jogs, paths, holds: `begin` has started something on a rig that is ready.
+/// Tests jogs, paths and pauses: `begin` has started something on a ready rig.
 void judge(Mode mode, double jerk, const std::function<void(MotionRig &)> &begin) {
     MotionRig rig;
     rig.set(Parameter::JOINT_BACKLASH, 0, 0.05);
@@ -62,7 +62,7 @@ void judge(Mode mode, double jerk, const std::function<void(MotionRig &)> &begin
     begin(rig);
     rig.step(400);
     ASSERT_FALSE(rig.status().isInPosition) << "in the middle of it";
-    rig.isPlannerAlive = false;  // what is committed is driven to its end
+    rig.isPlannerAlive = false;  // the committed path is driven to its end
     Clone clone(rig);
     const geometry::Pose here = rig.status().carte_pos_cmd;
     for (int n = 0; n < 3000; ++n) {

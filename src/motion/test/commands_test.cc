@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every command in every situation of the machine, compared with the table of
+// Every command in every situation of the machine, compared with the table in
 // docs/developer/motion_commands.md.
 #include <cmath>
 #include <fstream>
@@ -20,7 +20,7 @@ namespace {
 
 using testing::MotionRig;
 
-/// As the page names them.
+/// The name in the table.
 const char *word_for(Reason reason) {
     switch (reason) {
     case Reason::NONE: return "done";
@@ -98,7 +98,7 @@ geometry::Pose at(double x, double y = 0, double z = 0) {
     return p;
 }
 
-/// Where the path so far ends in coord mode [X].
+/// End of the path so far in coord mode [X].
 constexpr double PATH_END = 20;
 
 void bring_to(MotionRig &rig, Situation situation) {
@@ -134,7 +134,7 @@ void bring_to(MotionRig &rig, Situation situation) {
     EXPECT_FALSE(rig.status().isInPosition);
 }
 
-/// A command with values that are allowed, and its name in LinuxCNC's manual.
+/// A command with valid values, and its name in LinuxCNC's manual.
 struct Case {
     std::string legacy, name;
     std::variant<CommandBody, PathBody> body;
@@ -223,7 +223,7 @@ std::vector<Case> cases() {
     };
 }
 
-/// One command in one situation.
+/// Result of one command in one situation.
 std::string result_of(const Case &c, Situation situation) {
     SCOPED_TRACE(c.legacy + " " + c.name + " in situation " + std::to_string(static_cast<int>(situation)));
     MotionRig rig;
@@ -293,7 +293,7 @@ TEST(Commands, AreTakenOrRefusedAsThePageSays) {
                                                     << made;
 }
 
-/// A value that is no number is rejected even if all else is valid; the current motion is unchanged.
+/// A value that is not a number is rejected even if all else is valid; the current motion does not change.
 TEST(Commands, AValueThatIsNoNumberIsRefused) {
     const double nan = std::nan("");
     const geometry::Pose far = at(1, nan);
@@ -374,7 +374,7 @@ TEST(Commands, AValueThatIsNoNumberIsRefused) {
     }
 }
 
-/// A value that is not finite is no number either, with either sign.
+/// A value that is not finite is not a number, with either sign.
 TEST(Commands, APitchScaleThatIsNoNumberIsToldAsSuch) {
     for (const double scale : {std::nan(""), std::numeric_limits<double>::infinity()}) {
         EXPECT_EQ(
@@ -384,7 +384,7 @@ TEST(Commands, APitchScaleThatIsNoNumberIsToldAsSuch) {
     }
 }
 
-/// The planner looks every few cycles only: by then the last move may be over and its path dropped.
+/// The planner runs only every few cycles: by then the last move may have ended and its path may be dropped.
 TEST(Commands, AMoveThatWasOverBeforeAStopIsDone) {
     for (const bool isOver : {true, false}) {
         MotionRig rig;
@@ -405,7 +405,7 @@ TEST(Commands, AMoveThatWasOverBeforeAStopIsDone) {
     }
 }
 
-/// Each alternative of the two channels has a line in the table and is described.
+/// Each alternative of the two channels has a row in the table and is described.
 TEST(Commands, EveryDeclarationIsOnThePage) {
     std::set<std::size_t> immediate, path;
     const std::string text = page();

@@ -116,7 +116,7 @@ TEST(Controller, AbortStopsOnThePathWithinLimitsAndMakesOldCommandsStale) {
     testing::LimitChecker checker(std::vector<testing::AxisLimit>(3, {100, 1000}), MotionRig::T);
     rig.step(700);
     rig.send(Abort{2});
-    const CommandId late = rig.line(at(500));  // still of the old epoch
+    const CommandId late = rig.line(at(500));  // a command of the old epoch
     for (int i = 0; i < 2000; ++i) {
         rig.step();
         double p[3] = {rig.out->joint[0].motor_pos_cmd, rig.out->joint[1].motor_pos_cmd,
@@ -166,7 +166,7 @@ TEST(Controller, AnAbortStopsWithoutThePlannerToo) {
         for (; cycles < 1000 && rig.status().current_velocity > 0; ++cycles) {
             sample();
         }
-        // v/a, twice a/j for the jerk, and what a planner is waited for.
+        // v/a, twice a/j for the jerk, and the delay of the planner.
         EXPECT_LT(cycles, isJerkLimited ? 80 + 100 + 30 : 80 + 5);
         for (int i = 0; i < 300; ++i) {
             sample();
@@ -254,7 +254,7 @@ TEST(Controller, ArcsAreCheckedOverTheirWholeExtent) {
     arc.end = at(20, 0);
     arc.centre = at(10, 0);
     arc.normal = at(0, 0, 1);
-    arc.angle_rad = -3.14159265358979;  // over the top, y up to 10
+    arc.angle_rad = -3.14159265358979;  // passes the top, up to y 10
     arc.terms.feed = 50;
     const CommandId id = rig.send_path(arc);
     rig.step(100);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Extra joints (motmod num_extrajoints=): homed like others, then moved by joint.N.posthome-cmd. Judged by
-// the motor commands.
+// Extra joints (motmod num_extrajoints=) are homed like other joints, then moved by joint.N.posthome-cmd. The
+// motor commands are checked.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -18,7 +18,7 @@ using testing::MotionRig;
 
 constexpr int EXTRA = 3;
 
-/// X Y Z and an extra joint, whose motor command is judged while the machine is on.
+/// X Y Z and an extra joint, whose motor command is checked while the machine is on.
 struct ExtraRig {
     MotionRig rig{"XYZ", 1};
     testing::LimitChecker judge{{{50, 500, 1e300}}, MotionRig::T};
@@ -120,7 +120,7 @@ TEST(ExtraJoints, ItStopsAtItsSoftLimitWithoutOvershootAndThatIsToldOnce) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     for (int n = 0; n < 2000; ++n) {
-        r.pin() += 0.04;  // 40 a second, on and on
+        r.pin() += 0.04;  // 40 a second, continuously
         r.step();
     }
     EXPECT_EQ(r.motor(), 20);
@@ -375,7 +375,7 @@ TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse) {
     EXPECT_TRUE(r.rig.isDone(same));
 }
 
-/// A joint too many would be one that does not exist.
+/// A joint too many would not exist.
 TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside) {
     ExtraJoints extra;
     extra.use_joints(2, 3);

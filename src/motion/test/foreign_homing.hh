@@ -6,10 +6,10 @@
 
 namespace mw::motion {
 
-/// Its joint homes until it is ended or fails; the module reports whether it has work.
+/// Its joint homes until it is ended or fails. The module reports whether it has work.
 struct ForeignModule final : homing::Module {
     bool isBusy = false, areHomed = false;
-    int steps = 0;  ///< cycles in which it was asked for moves
+    int steps = 0;  ///< cycles in which the module was called for moves
     void set_num_joints(int) noexcept override {}
     void configure(int, const homing::Parameters &) noexcept override {}
     void start(int) noexcept override { isBusy = true; }

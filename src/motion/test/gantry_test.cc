@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The sides of a gantry may differ when the machine is switched on. No joint jumps, none exceeds its limits,
-// and axes do not move until the sides are aligned.
+// The sides of a gantry may differ when the machine is switched on. No joint jumps or exceeds its limits, and
+// axes do not move until the sides are aligned.
 #include <algorithm>
 #include <vector>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr double SIDE_VELOCITY = 100, SIDE_ACCELERATION = 1000;
 constexpr double TOLERATED = 0.5;  ///< MIN_FERROR of the sides [mm]
 
-/// Two sides, 1 and 2, move Y. Judged by the motor commands.
+/// Two sides, joints 1 and 2, move Y. The motor commands are checked.
 struct GantryRig : testing::MotionRig {
     GantryRig() : MotionRig("XYYZ", SIDE_VELOCITY, SIDE_ACCELERATION) {
         for (int j = 0; j < 4; ++j) {
@@ -24,14 +24,14 @@ struct GantryRig : testing::MotionRig {
         }
         ready();
     }
-    /// Off, and side 2 sags.
+    /// Switches off and lets side 2 sag.
     void sag(double by) {
         send(Disable{});
         step(3);
         in.joint[2].motor_pos_fb += by;
         step(2);
     }
-    /// Steps; every motor is watched.
+    /// Steps, and checks every motor.
     void watch(int count) {
         for (int i = 0; i < count; ++i) {
             step();

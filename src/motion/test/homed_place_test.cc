@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where kinematics that iterate look for the pose once the joints have been homed.
+// The start pose of iterative kinematics after the joints have been homed.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using testing::MotionRig;
 
-/// Joints are X Y Z, and are found from less than 10 away only.
+/// Joints are X Y Z. A pose is found only from a start less than 10 away.
 class ShortSighted final : public kinematics::Kinematics {
   public:
     kinematics::Kind kind() const noexcept override { return kinematics::Kind::BOTH; }

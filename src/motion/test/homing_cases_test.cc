@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every manner of homing of a whole controller, on simulated axes, and what ends it.
+// Each method of homing with a whole controller on simulated axes, and the events that end it.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -36,7 +36,7 @@ TEST(HomingCases, AnIndexCountsWithASwitchOrWithoutAndWhetherItResetsTheEncoderO
             ASSERT_TRUE(m.wait());
             ASSERT_TRUE(m.isHomed(0)) << m.fault();
             EXPECT_EQ(m.pos_cmd(0), 9);
-            // The first pulse above the switch, or above the place where it began.
+            // The first pulse above the switch, or above the start position.
             const double pulse = search != 0 ? -18.75 : 6.25;
             EXPECT_NEAR(m.zero(0) + 7, pulse, 2.0 * MotionRig::T + 1e-9) << search;
         }
@@ -178,8 +178,8 @@ TEST(HomingCases, ASwitchThatClosesAgainWhileStoppingIsNoZero) {
         << m.fault();
 }
 
-/// A slow search stops at once behind the opening edge: without a longer retract the closing edge comes while
-/// backlash is still being compensated.
+/// A slow search stops right behind the opening edge. Without a longer retract, the closing edge would be
+/// reached while backlash is being compensated.
 TEST(HomingCases, ALatchInTheDirectionOfTheSearchBeginsSoFarOffThatPlayIsTakenUpAtTheEdge) {
     for (const double play : {0.1, 0.5, 2.0}) {
         for (const double latch : {1.0, 5.0, 20.0}) {
@@ -243,7 +243,7 @@ TEST(HomingCases, AJointThatIsLeftOutIsNotHomed) {
     EXPECT_FALSE(m.isHomed(1));
 }
 
-/// A locking indexer that takes `delay` cycles to do as the pin says.
+/// A locking indexer that needs `delay` cycles to follow its pin.
 struct Indexer {
     HomingRig m;
     int delay = 50, count = 0;

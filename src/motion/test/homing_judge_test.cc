@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random joints and gantries are homed on simulated axes, sound and broken ones. The judge knows where the
-// slides truly are and what is broken, and nothing of how homing goes about it.
+// Random joints and gantries are homed on simulated axes, intact and broken ones. The judge knows the true
+// positions of the slides and the fault, but not how homing works.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,7 +24,7 @@ using ::mw::testing::MotionRig;
 enum class Manner { SWITCH, SWITCH_AND_INDEX, INDEX_ONLY, IMMEDIATE, ABSOLUTE, ABSOLUTE_STAYING };
 enum class Broken { NOTHING, SWITCH_OPEN, SWITCH_CLOSED, INDEX, LIMIT, ABORT, OFF };
 
-/// One machine and what is to come of it.
+/// One machine and its expected outcome.
 struct Plan {
     std::mt19937_64 random;
     Manner manner{};
@@ -61,7 +61,7 @@ struct Plan {
         isReset = isOneIn(2);
         skew = between(2, 6);
         const double start = between(-50, 50);
-        const double to_switch = way * between(-5, 60);  // below 0: it begins on the switch
+        const double to_switch = way * between(-5, 60);  // below 0: starts on the switch
         const double part = between(0.25, 0.75);
         for (int j = 0; j < count(); ++j) {
             plants::HomeAxis::Build b;
@@ -92,7 +92,7 @@ struct Plan {
             broken = Broken::ABORT;
         }
     }
-    /// Where the slide of joint j is when the joint says 0.
+    /// True position of the slide when joint j reports 0.
     double true_zero(int j) const {
         const plants::HomeAxis::Build &b = axes[static_cast<std::size_t>(j)];
         if (!isMoving()) {
@@ -107,8 +107,8 @@ struct Plan {
     }
     double tolerance() const {
         const double speed = std::abs(latch) * std::max(1.0, scale);
-        // Seen in the next cycle, of a contact that chatters in the one after it has settled. Play is taken
-        // up while it is met where it turned just before.
+        // The switch is seen in the next cycle; with bounce, in the cycle after the contact has settled.
+        // Backlash is compensated when the joint reversed just before.
         const double seen_after_s = MotionRig::T + (bounce_s > 0 ? bounce_s + MotionRig::T : 0.0);
         return speed * seen_after_s + (isSameWay ? 0.0 : play) + 1e-9;
     }
@@ -161,14 +161,14 @@ struct Judge {
         case Broken::OFF: m.rig.send(Disable{}); break;
         }
     }
-    /// True when it has homed. What is against the rules is in `complaint`.
+    /// Returns true if homed. A violated rule is in `complaint`.
     bool run() {
-        const double share = plan.play > 0 ? 1.5 : 1.0;  // backlash is compensated on top
+        const double share = plan.play > 0 ? 1.5 : 1.0;  // backlash is compensated additionally
         const mw::testing::AxisLimit most{share * plan.velocity, share * plan.acceleration};
         std::vector<mw::testing::LimitChecker> checkers(static_cast<std::size_t>(plan.count()),
                                                         mw::testing::LimitChecker({most}, MotionRig::T));
         std::vector<bool> wasWanted(2, false);
-        // What is broken from the start is so before it begins; the rest comes at its time.
+        // A fault from the start is set before homing begins; other faults follow at their time.
         m.rig.send(Home{-1});
         int n = 0;
         int rest = 600;
@@ -184,7 +184,7 @@ struct Judge {
                 const auto i = static_cast<std::size_t>(j);
                 const bool isWanted = m.rig.out->joint[i].isIndexEnabled;
                 if (wasWanted[i] && !isWanted) {
-                    checkers[i].restart();  // the encoder has other numbers
+                    checkers[i].restart();  // the encoder was reset
                 }
                 wasWanted[i] = isWanted;
                 if (m.rig.status().isEnabled) {
@@ -209,7 +209,7 @@ struct Judge {
         return m.isHomed(0) && m.isHomed(plan.count() - 1);
     }
     void judge_end(bool isBroken) {
-        // During the search for the edge, a broken contact looks like a good one.
+        // During the search for the edge, a broken contact cannot be distinguished from a good one.
         const bool isSwitchBroken =
             plan.broken == Broken::SWITCH_OPEN || plan.broken == Broken::SWITCH_CLOSED;
         const bool hasLied = isSwitchBroken && homed_at > plan.broken_after;

@@ -11,7 +11,7 @@
 
 namespace mw::testing {
 
-/// Axes between the rig's motor commands and its feedback.
+/// Simulated axes between the motor commands and the feedback of the rig.
 struct HomingRig {
     MotionRig rig;
     std::vector<plants::HomeAxis> axes;

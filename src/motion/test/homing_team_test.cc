@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints that move one thing stay together on every leg of homing: both sides of a gantry, on simulated axes.
+// Joints that move one axis stay together on each leg of homing: both sides of a gantry, on simulated axes.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -46,7 +46,7 @@ struct Gantry {
         const bool isLeg = state(1) != State::SEARCH && state(2) != State::SEARCH &&
                            state(1) != State::FINAL && state(1) != State::IDLE &&
                            state(1) != State::SEARCH_STOP;
-        // Slides follow their commands a cycle later.
+        // Slides follow their commands one cycle later.
         widest_legs = std::max(widest_legs, isLeg && wasLeg ? std::abs(skew() - before) : 0.0);
         wasLeg = isLeg;
     }
@@ -65,7 +65,7 @@ struct Gantry {
 
 TEST(HomingTeam, BothSidesOfAGantryLeaveAndStopTogetherOnEveryLeg) {
     for (const double latch : {2.0, -2.0}) {
-        for (const double start : {0.0, -21.0, -30.0}) {  // off the switches, on one of them, on both
+        for (const double start : {0.0, -21.0, -30.0}) {  // off the switches, on one, on both
             for (const bool isIndex : {false, true}) {
                 Gantry g({.start = start, .switch_at = -20, .index_pitch = 5, .index_phase = 1},
                          {.start = start, .switch_at = -22, .index_pitch = 5, .index_phase = 4});
@@ -99,7 +99,7 @@ TEST(HomingTeam, ASwitchThatIsNotFoundStopsBothBeforeTheyAreTooFarApart) {
             g.m.axes[static_cast<std::size_t>(dead)].faults.switch_open = true;
             g.home();
             EXPECT_FALSE(g.m.isHomed(1) || g.m.isHomed(2));
-            // What the other side has needed to stop after its switch is not searched again.
+            // The travel that the other side needed to stop behind its switch is not searched again.
             const double stated = most > 0 ? most : 4.0;
             EXPECT_LE(g.widest, stated + 1e-9);
             EXPECT_GT(g.widest, stated - 0.2);

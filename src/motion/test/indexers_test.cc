@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Locking indexers in programs and jogs. The judge sees what a lock and a motor see: the pins unlock and
-// is-unlocked and the motor commands. No motor of an indexer moves unless its lock is open, no other one
-// unless it is shut, and nothing leaves its limits.
+// Locking indexers in programs and jogs. The judge uses only the pins unlock and is-unlocked and the motor
+// commands. An indexer moves only while its lock is open, other motors only while it is shut, and nothing
+// exceeds its limits.
 #include <array>
 #include <functional>
 #include <string>
@@ -20,7 +20,7 @@ using testing::MotionRig;
 constexpr int B = 3;
 constexpr int AXIS_B = geometry::AXIS_B;
 
-/// A lock that takes its time.
+/// A lock with a delay.
 struct Lock {
     int delay = 40;  ///< [cycles]
     bool isOpen = false, isJammed = false;
@@ -270,7 +270,7 @@ TEST(Indexers, NoModeIsLeftAndNothingHomedWhileOneIsUnlocked) {
     r.check();
 }
 
-/// Where it is when something happens.
+/// State of the lock when an event occurs.
 enum class When { UNLOCKING, UNLOCKED, MOVING, LOCKING };
 struct Event {
     const char *name;
@@ -390,7 +390,7 @@ TEST(Indexers, OneThatDoesNotLockIsAFaultAndNoProgramGoesOn) {
     EXPECT_EQ(r.rig.refusal(refused), Reason::INDEXER_OPEN);
     r.rig.send(Abort{++r.rig.epoch});
     r.step(20);
-    r.lock.isJammed = false;  // an operator has freed it
+    r.lock.isJammed = false;  // the operator has freed it
     r.step(100);
     const CommandId again = r.rapid(10, 30);
     ASSERT_TRUE(r.run_until([&] { return r.rig.isDone(again); }));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs whose target changes in motion: limits hold at every sample, the last target is reached, and not later
-// than with a stop and a new start. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
+// Jogs whose target changes during motion: limits are kept at every sample, the last target is reached, and
+// no later than with a stop and a new start. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST select the seeds.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -125,8 +125,8 @@ TEST(JogTargets, MayChangeInMotionInTeleopModeWithJerkLimits) {
     run_all(Mode::TELEOP, 3e4);
 }
 
-/// A jerk that is small compared with the acceleration: the averaging time must be shorter than a reversal at
-/// full acceleration takes.
+/// The jerk is small compared with the acceleration: the averaging time must be shorter than a reversal at
+/// full acceleration.
 TEST(JogStops, AJogWithALowJerkStopsAsSoonAsItCan) {
     constexpr double V = 100, A = 4000, J = 10000, SLOW = 8;
     for (const bool isJoint : {true, false}) {
@@ -152,14 +152,14 @@ TEST(JogStops, AJogWithALowJerkStopsAsSoonAsItCan) {
             go(1);
             ++cycles;
         }
-        // The average takes sqrt(2 V / J), the reference before it V / a with half of what that average
-        // allows.
+        // The average takes sqrt(2 V / J), and the reference before it V / a with half of what that average
+        // permits.
         EXPECT_LT(cycles, 160) << (isJoint ? "joint" : "axis");
         EXPECT_EQ(checker.report(), "");
     }
 }
 
-/// A wheel at the axis, by a tenth each count.
+/// Turns the axis wheel; each count is 0.1.
 void turn_to(MotionRig &rig, std::int32_t counts) {
     WheelInput &wheel = rig.in.axis_wheel[geometry::AXIS_Y];
     wheel.isEnabled = true;

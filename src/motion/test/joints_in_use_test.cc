@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints that are left out, taken in again, not there, or have lost their homes: no motor takes a step.
+// Joints that are deactivated, activated again, missing, or have lost their home: no motor steps.
 #include <gtest/gtest.h>
 
 #include "kinematics/corexy.hh"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Machines whose joints are not axes: every joint within its limits at every sample of random programs, with
-// and without jerk limits. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
+// Machines whose joints are not axes: every joint is within its limits at every sample of random programs,
+// with and without jerk limits. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST select the seeds.
 #include <cstdlib>
 #include <random>
 
@@ -41,7 +41,7 @@ class Drive {
             limits_.push_back({v, a, jerk});
         }
         for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-            // The joints' own limits are what counts.
+            // The joint limits must be the tightest.
             const bool isSet = machine.isJerkLimited && !geometry::isAngular(i);
             rig_.set(Parameter::AXIS_MAX_ACCELERATION, i, isSet ? 2000 : 1e6);
             rig_.set(Parameter::AXIS_MAX_JERK, i, isSet && machine.areAxesJerkLimited ? 50000 : 1e9);

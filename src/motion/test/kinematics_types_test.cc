@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of several types, switched by motion.switchkins-type. The rig aborts the test program where a
-// joint does more than its limits allow, so no switch may make one jump.
+// Kinematics of several types, switched by motion.switchkins-type. The rig aborts the test if a joint exceeds
+// its limits, so no switch may cause a jump.
 #include <algorithm>
 #include <random>
 
@@ -13,8 +13,8 @@ namespace {
 
 using testing::MotionRig;
 
-/// Type 0: joints are X Y Z. Type 1: the same turned by a quarter about Z and 100 off. Type 2: has no pose
-/// but where joint 0 is at 10 or more. There are no others.
+/// Type 0: joints are X Y Z. Type 1: the same, rotated by a quarter about Z and shifted by 100. Type 2: has a
+/// pose only if joint 0 is 10 or more. Other types do not exist.
 class Turning final : public kinematics::Kinematics, public kinematics::TypeSwitch {
   public:
     int type = 0;
@@ -162,7 +162,8 @@ TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing) {
     expect_joints(0, 0);
 }
 
-/// Pushed by hand to where no pose is known, off, in a mode in which the pose commands the joints.
+/// The machine is pushed by hand, while off, to a position without a pose. Its mode is one in which the pose
+/// commands the joints.
 TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineGoesOnInJointModeAlone) {
     ask(2);
     settle();
@@ -238,8 +239,8 @@ TEST_F(KinematicsTypesTest, WithoutHomesTheTypeChangesAndNoPoseIsNeeded) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-/// At any instant of any program joints keep their limits (the rig checks them), the pose is that of the
-/// joints, and a path that was not reported as stopped is done.
+/// At any time in any program, joints keep their limits (the rig checks them), the pose matches the joints,
+/// and a path that was not reported as stopped is executed.
 TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSilence) {
     std::mt19937 random(14);
     std::uniform_int_distribution<int> pause(1, 400);
@@ -276,7 +277,7 @@ TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSi
     EXPECT_GT(driven, 40);
 }
 
-/// Joints are X Y Z; only in type 1 that is said of them to be so everywhere.
+/// Joints are X Y Z. The type 1 only declares that the joints are linear everywhere.
 class SaidLinear final : public kinematics::Kinematics, public kinematics::TypeSwitch {
   public:
     int type = 0;
@@ -300,7 +301,7 @@ class SaidLinear final : public kinematics::Kinematics, public kinematics::TypeS
     kinematics::TypeSwitch *type_switch() const noexcept override { return const_cast<SaidLinear *>(this); }
 };
 
-/// External offsets are for joints that go in proportion to axes, in each mode in which the type was changed.
+/// External offsets require joints that move in proportion to axes, in each mode in which the type changes.
 TEST(KinematicsTypes, OffsetsAreThereFromTheChangeOnToATypeThatAllowsThem) {
     for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
         SaidLinear kinematics;

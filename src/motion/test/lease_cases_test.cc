@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs with a lease where something ends, bounds or carries them.
+// Jogs with a lease: their ends, their limits and their motion.
 #include <functional>
 #include <string>
 
@@ -53,8 +53,8 @@ TEST(JogLease, AtTheSoftLimitRenewalsChangeNothing) {
     EXPECT_EQ(rig.refusal(fresh), Reason::BEYOND_SOFT_LIMIT);
 }
 
-/// A client that has not heard of a stop renews: nothing moves, whether its jog moved or was stopped at a
-/// limit.
+/// A client that has not received a stop renews its jog: nothing moves, whether the jog moved or was stopped
+/// at a limit.
 TEST(JogLease, NoRenewalOutlivesAStop) {
     struct Stop {
         const char *name;
@@ -121,7 +121,7 @@ TEST(JogLease, NoRenewalOutlivesAStop) {
     }
 }
 
-/// Its end is twice the travel from where it began, not from where it was renewed.
+/// The jog ends twice the travel from its start, not from its renewal.
 TEST(JogLease, OfAJointThatIsNotHomedEndsWhereItWouldWithoutRenewals) {
     const auto end_of = [](bool isLeased) {
         MotionRig rig;

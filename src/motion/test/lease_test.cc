@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs with a lease, judged by samples of the trace alone: a renewed jog keeps its speed, another one stops
+// Jogs with a lease, checked by samples of the trace alone: a renewed jog keeps its speed, any other stops
 // within the lease and a servo cycle, and a stopped jog does not continue. MW_CAMPAIGN_SEEDS and
-// MW_CAMPAIGN_FIRST choose the seeds.
+// MW_CAMPAIGN_FIRST select the seeds.
 #include <array>
 #include <map>
 #include <random>
@@ -20,10 +20,10 @@ using testing::MotionRig;
 
 constexpr double T = MotionRig::T;
 constexpr double S_TO_NS = 1e9;
-/// What rounding of positions makes of speeds [unit/s].
+/// Effect of position rounding on speeds [unit/s].
 constexpr double SPEED_ROUNDING = 1e-6;
 
-/// What the test knows of one jog: what it has asked for and what was answered, not how it is carried out.
+/// Facts that the test knows of a jog: its requests and answers, not its execution.
 class JogJudge {
   public:
     JogJudge(double acceleration, double jerk)
@@ -86,9 +86,9 @@ class JogJudge {
     double wanted() const { return std::abs(velocity_) * scale_; }
     void change(bool wasSettled) {
         speed_at_change_ = speed_;
-        // With jerk limits an earlier change may still be under way.
+        // With jerk limits an earlier change may be incomplete.
         floor_ = std::min({wasSettled ? speed_ : floor_, speed_, wanted()});
-        // A sample has the average speed of its cycle; at its end a change was half a cycle further.
+        // A sample has the average speed of its cycle; at its end a change has progressed by half a cycle.
         ahead_ = wasSettled ? 0.0 : 0.5 * acceleration_ * T;
         cycles_ = 0;
     }
@@ -116,7 +116,7 @@ class JogJudge {
             ++cruising_cycles;
         }
     }
-    /// One cycle of grace, then slower at each sample, and at rest when the limits allow it.
+    /// One cycle of delay, then slower at each sample, and stopped when the limits permit.
     void judge_braking(double v) {
         const double speed = std::abs(v);
         const bool mustSlow = cycles_ >= 1 && (wasCruising_ || !isJerkLimited_);
@@ -144,7 +144,7 @@ struct Counts {
         refused_others = 0;
 };
 
-/// Two clients that hold a key each, lose their connection at random, and do not notice stops.
+/// Two clients each hold a key, lose their connection at random, and do not notice stops.
 class LeaseRun {
   public:
     LeaseRun(Mode mode, double jerk, unsigned seed)
@@ -218,8 +218,8 @@ class LeaseRun {
             c.isHolding = false;
         } else if (c.isHolding && cycle_ >= c.next_renewal) {
             c.velocity *= chance(0.1) ? real(0.3, 1) : 1.0;
-            // Without the mark the same command begins a jog that was stopped; a client that does not look
-            // at what has become of its jogs needs the mark.
+            // Without the mark the same command starts a jog that was stopped; a client that does not check
+            // its jogs needs the mark.
             jog(i, !judge.isHeld() || chance(0.5));
         }
     }
@@ -356,7 +356,7 @@ void run_all(Mode mode, double jerk) {
         all.refused_renewals += one.refused_renewals;
         all.refused_others += one.refused_others;
     }
-    // The work is done, and each run has seen every end of a jog.
+    // The number of jogs is sufficient, and each run has seen every type of end.
     EXPECT_GT(all.begun, 5 * count);
     EXPECT_GT(all.renewed, 20 * count);
     EXPECT_GT(all.lapsed, 2 * count);

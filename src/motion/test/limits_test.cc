@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The one place where limits of joints, axes and the machine become the limits of paths and jogs.
+// The combined limits of joints, axes and the machine for paths and jogs.
 #include <gtest/gtest.h>
 
 #include "kinematics/corexy.hh"
@@ -145,7 +145,7 @@ TEST(Limits, WhereJointsAreNoAxesTheirSoftLimitsAreNoneOfAxes) {
     EXPECT_EQ(limits.joints.low[0], -1);
 }
 
-/// X + Y and X - Y: half of a joint is each axis's when both go at once, and its ratio of that its offset's.
+/// X + Y and X - Y: each axis gets half of a joint if both move, and its offset gets its ratio of that half.
 TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNoAxes) {
     Settings s = with({{Parameter::AXIS_OFFSET_RATIO, X, 0.3},
                        {Parameter::AXIS_OFFSET_RATIO, Y, 0.1},

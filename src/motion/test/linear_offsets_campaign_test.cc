@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random machines whose joints go in proportion to axes, with random limits: programs, jogs, wheels,
-// overrides and stops while pins change the offsets at any instant. Motors are judged as joints and as axes;
-// without the offsets the motion must be the program's; and the work is counted.
+// Random machines whose joints move in proportion to axes, with random limits. Programs, jogs, wheels,
+// overrides and stops run while pins change the offsets at random times. Motors are checked as joints and as
+// axes; without the offsets the motion must match the program; and moves are counted.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -37,7 +37,7 @@ CoordinateLimits draw_limits(Random &random, bool isJerkLimited) {
     return c;
 }
 
-/// Rows near to those of a turned table, or of axes that are not quite true.
+/// Matrices near those of a rotated table, or of axes that are not square.
 std::array<double, 9> draw_matrix(Random &random) {
     const double turn = random.chance(0.5) ? random.real(-std::numbers::pi, std::numbers::pi) : 0.0;
     const double c = std::cos(turn);
@@ -52,7 +52,7 @@ std::array<double, 9> draw_matrix(Random &random) {
 
 enum class Kind { COREXY, MEASURED, TURNED };
 
-/// Half of the machines have joints that end before the axes do.
+/// Half of the machines have joints with less travel than the axes.
 LinearMachine draw_machine(Random &random, Kind kind, bool isJerkLimited) {
     LinearMachine m = kind == Kind::COREXY     ? ::mw::testing::corexy()
                       : kind == Kind::MEASURED ? ::mw::testing::measured(draw_matrix(random))
@@ -76,12 +76,12 @@ LinearMachine draw_machine(Random &random, Kind kind, bool isJerkLimited) {
     return m;
 }
 
-/// X Y Z alone: tolerances are of these.
+/// X Y Z only, because the tolerances apply to them.
 geometry::Pose place_of(const geometry::Pose &p) {
     return {{p[0], p[1], p[2]}};
 }
 
-/// How far a place is from a straight line.
+/// Distance from a straight line.
 double distance(const geometry::Pose &p, const geometry::Pose &from, const geometry::Pose &to) {
     const geometry::Pose run = to - from;
     const double length2 = geometry::dot(run, run);
@@ -100,7 +100,7 @@ struct Way {
         }
         const double x = p[0] - centre[0];
         const double y = p[1] - centre[1];
-        // Nearest place by the angle on it.
+        // Nearest point on the circle, by angle.
         double turned = std::remainder(std::atan2(y, x) - angle, 2 * std::numbers::pi);
         turned = sweep > 0 && turned < 0 ? turned + 2 * std::numbers::pi : turned;
         turned = sweep < 0 && turned > 0 ? turned - 2 * std::numbers::pi : turned;
@@ -121,7 +121,7 @@ struct Count {
     double v = 0, a = 0, j = 0, outside = -1e300, off_path = -1e300;
 };
 
-/// One machine, and what is done with it.
+/// One machine and its actions.
 class Session {
   public:
     Session(unsigned seed, bool isJerkLimited, Count &count)
@@ -152,7 +152,7 @@ class Session {
     }
 
   private:
-    /// Pins at any instant, each cycle by chance.
+    /// Changes pins at random times in each cycle.
     void turn_pins() {
         if (!random_.chance(0.02)) {
             return;
@@ -175,7 +175,7 @@ class Session {
             note_path();
         }
     }
-    /// What is left without the offsets is on one of the ways of the program.
+    /// The path without offsets lies on the program's path.
     void note_path() {
         if (ways_.empty()) {
             return;
@@ -274,7 +274,7 @@ class Session {
         count_.refused += refused;
         count_.done += rig_.rig->isDone(id) ? 1 : 0;
         EXPECT_TRUE(isAborted || refused > 0 || rig_.rig->isDone(id)) << "the program does not end";
-        ways_.clear();  // a stop on an arc may leave it
+        ways_.clear();  // a stop may end on an arc
         rig_.rig->send(Abort{++rig_.rig->epoch});
         go(1500);
         rig_.rig->answers.clear();
@@ -342,7 +342,7 @@ class Session {
         go(1500);
         expect_no_fault(true);
     }
-    /// Nothing else moves: offsets reach their request, or are reported as limited.
+    /// Waits while nothing else moves, until offsets reach their request or are reported as limited.
     void await_offsets() {
         constexpr int LONG = 600000;  // of the smallest share
         bool isFar = true;
@@ -368,7 +368,7 @@ class Session {
     geometry::Pose end_;
     double tolerance_ = 0;
     double worst_off_path_ = -1e300;  ///< over the tolerance
-    bool isMild_ = false;             ///< offsets are short of most limits
+    bool isMild_ = false;             ///< most limits are larger than the offsets need
 };
 
 class LinearOffsetCampaign : public ::testing::TestWithParam<bool> {};

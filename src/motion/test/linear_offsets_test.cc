@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// External offsets on machines whose joints are no axes but go in proportion to them: CoreXY, axes as
-// measured, a turned table. Motor commands are judged by formulas of this file alone.
+// External offsets on machines whose joints are not axes but move in proportion to them: CoreXY, axes as
+// measured, a rotated table. Motor commands are checked with formulas of this file only.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -81,8 +81,8 @@ TEST(LinearOffsets, OffsetsOfBothAxesOfABeltAndAPathShareWhatTheJointCanDo) {
     }
 }
 
-/// Average speeds on a circle of chords, `sense` of its angle, where mostly joint 0 and where mostly joint 1
-/// is far out. Later the path leaves the circle in all directions.
+/// Average speeds on a circle of chords (direction `sense`) where mainly joint 0 and where mainly joint 1 is
+/// far out. Later the path leaves the circle in all directions.
 std::array<double, 2> speeds_on_circle(double sense) {
     constexpr double RADIUS = 5, CHORD_RAD = 0.05, TOLERANCE = 0.01;
     LinearMachine m = corexy(true);
@@ -118,9 +118,8 @@ std::array<double, 2> speeds_on_circle(double sense) {
     return {sum[0] / samples[0], sum[1] / samples[1]};
 }
 
-/// Corners of chords are moved out, against the moving average, up to where the path reaches elsewhere,
-/// regardless of the joint that this moves out further: a mirrored circle is driven the same with the joints
-/// exchanged.
+/// Corners of chords are shifted outwards, against the moving average, up to the farthest extent of the path,
+/// whichever joint this moves: a mirrored circle runs the same with exchanged joints.
 TEST(LinearOffsets, ACircleOfChordsIsDrivenTheSameInTheDirectionOfEitherJoint) {
     const auto [left_0, left_1] = speeds_on_circle(1);
     const auto [right_0, right_1] = speeds_on_circle(-1);
@@ -149,7 +148,7 @@ TEST(LinearOffsets, AJogHasWhatOffsetsLeaveOfTheJoints) {
     }
 }
 
-/// A feed override of 200 % is of jogs as well.
+/// A feed override of 200 % also applies to jogs.
 TEST(LinearOffsets, AJogIsNoFasterThanItsAxisWhateverTheOverride) {
     for (const bool isJerkLimited : {false, true}) {
         LinearRig rig(corexy(isJerkLimited));
@@ -206,7 +205,7 @@ TEST(LinearOffsets, AJogStopsWhereTheOffsetLeavesTheJointNoMore) {
     rig.expect_within();
 }
 
-/// What the jog under way is sent to is its own: the offset takes none of the room before.
+/// The travel to the jog's target is reserved: the offset must not use it before the jog has arrived.
 TEST(LinearOffsets, AJogUnderWayArrivesWhateverAnOffsetAsksForMeanwhile) {
     for (const bool isJerkLimited : {false, true}) {
         LinearMachine m = corexy(isJerkLimited);
@@ -295,7 +294,7 @@ TEST(LinearOffsets, OffAndOnFreeModeAbortAndLostHomesAreAsWhereJointsAreAxes) {
     rig.go(1000);
     rig.rig->send(SetMode{Mode::FREE});
     rig.go(5);
-    rig.rig->send(JogIncremental{{true, 0}, 50, 6});  // half of it is X, the other half Y
+    rig.rig->send(JogIncremental{{true, 0}, 50, 6});  // half of it is X, half Y
     rig.go(1000);
     EXPECT_DOUBLE_EQ(rig.motor(0), 9);
     EXPECT_DOUBLE_EQ(rig.offset(0), 3);
@@ -330,7 +329,7 @@ TEST(LinearOffsets, PinsOfMatrixkinsThatAreSetLaterCount) {
     LinearMachine m = ::mw::testing::measured({1, 0, 0, 0, 1, 0, 0, 0, 1});
     m.ratio = {0, 0.5, 0};
     LinearRig rig(m);
-    m.matrix->set(1, 2.0);  // joint 0 goes twice as far with Y as joint 1
+    m.matrix->set(1, 2.0);  // joint 0 moves twice as far with Y as joint 1
     rig.begin(Mode::TELEOP);
     rig.isJudged = false;
     rig.pins(1).counts = 1000;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A driver reports that its positions are no longer those of the machine.
+// A driver reports that its positions do not match the machine.
 #include <gtest/gtest.h>
 
 #include "motion/interface/texts.hh"

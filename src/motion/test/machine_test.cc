@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What surrounds the path: homing by switches, backlash, wheels, spindles, watchdog, overrides.
+// Functions around the path: homing by switches, backlash, wheels, spindles, watchdog, overrides.
 #include <gtest/gtest.h>
 
 #include "components/plants/encoder.hh"
@@ -39,7 +39,7 @@ TEST(Machine, HomesByASwitchAndKeepsTheLimits) {
         30));
     EXPECT_TRUE(checker.isWithin()) << checker.report();
     EXPECT_EQ(rig.status().joint[0].pos_cmd, 1.0);
-    // The opening edge at motor -12 is joint position HOME_OFFSET.
+    // The opening edge at motor -12 becomes joint position HOME_OFFSET.
     EXPECT_NEAR(rig.out->joint[0].motor_offset, -12.0 - -5.0, 5e-3);
     EXPECT_TRUE(rig.faults.empty());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// External offsets on top of jogs and paths: every limit of axes and joints holds for the sum, and the work
-// is done.
+// External offsets added to jogs and paths: the sum keeps every limit of axes and joints, and the program is
+// executed.
 #include <cmath>
 #include <random>
 
@@ -27,7 +27,7 @@ geometry::Pose at(double x, double y, double z) {
     return p;
 }
 
-/// X and Z have offsets, Y has none. Every sample is judged.
+/// X and Z may have offsets, Y may not. Every sample is checked.
 struct OffsetRig : MotionRig {
     LimitChecker checker;
     double worst_outside = -1e300;
@@ -172,7 +172,7 @@ TEST(Offsets, SwitchedOffAndOnNothingMovesAndTheyAreZero) {
     rig.expect_within();
 }
 
-/// The program starts at the machine's position: a former offset does not cause a jump.
+/// The program starts at the position of the machine; an earlier offset causes no jump.
 TEST(Offsets, SwitchedOnInAProgramTheMachineStandsWhereItStood) {
     OffsetRig rig;
     rig.ready();
@@ -352,13 +352,13 @@ TEST(Offsets, CutOffOnTheirWayTheyAreAtRest) {
     EXPECT_EQ(rig.motor(0), stood);
 }
 
-/// While the planner plans, the servo thread continues: an accepted move counts there at once.
+/// While the planner plans, the servo thread continues: an accepted move is counted at once.
 TEST(Offsets, AMoveThatIsAcceptedKeepsItsRoomFromThatInstant) {
     int refused = 0;
     for (int lead = 0; lead < 3 * MotionRig::PLANNER_PERIOD; ++lead) {
         OffsetRig rig;
         for (int j = 0; j < 3; ++j) {
-            rig.set(Parameter::JOINT_MAX_ACCELERATION, j, 200 * A);  // far enough in a planner's period
+            rig.set(Parameter::JOINT_MAX_ACCELERATION, j, 200 * A);  // fast enough for a planner period
         }
         rig.ready();
         const CommandId to_the_limit = rig.line(at(LIMIT, 0, 0));
@@ -376,7 +376,7 @@ TEST(Offsets, AMoveThatIsAcceptedKeepsItsRoomFromThatInstant) {
     EXPECT_LT(refused, 3 * MotionRig::PLANNER_PERIOD);
 }
 
-/// A soft limit keeps it at zero: it is gone with its share, and motion.eoffset-limited with it.
+/// A soft limit keeps the offset at zero. Removing its share ends the offset and motion.eoffset-limited.
 TEST(Offsets, WithoutAShareNoneIsLimited) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
@@ -460,7 +460,7 @@ TEST_P(OffsetCampaign, NoSampleOfTheSumLeavesALimit) {
                 rig.go(1);
             }
             if (!isJogging) {
-                // A move that does not fit beside an offset is rejected, and the path stops before it.
+                // A move that does not fit next to an offset is rejected, and the path stops before it.
                 rig.send(Abort{++rig.epoch});
                 const bool wasDone = rig.isDone(id);
                 done += wasDone ? 1 : 0;

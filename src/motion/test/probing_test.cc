@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Probing moves whose end is there at the start; outputs that change between moves.
+// Probing moves that already have contact at the start; outputs that change between moves.
 #include <gtest/gtest.h>
 
 #include "tests/support/motion_rig.hh"
@@ -27,7 +27,7 @@ TEST(Probing, AProbingMoveIsRefusedWhereItsEndIsThereAtTheStart) {
 }
 
 TEST(Probing, AProbingMoveThatNeedNotTripIsDoneWhereItsEndIsThereAtTheStart) {
-    constexpr double NEARLY_NOTHING = 0.002;  // what one cycle of acceleration and its braking travel [mm]
+    constexpr double NEARLY_NOTHING = 0.002;  // travel of one cycle of acceleration and its braking [mm]
     for (const bool isAway : {false, true}) {
         MotionRig rig;
         rig.ready();

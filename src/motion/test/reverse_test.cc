@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Negative adaptive feed: back along the path that was commanded and forward again, within every limit.
+// Negative adaptive feed: back along the commanded path and forward again, within every limit.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -154,7 +154,7 @@ TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere) {
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 
-/// Reverse run begins where the path stopped: too slowly to be seen at first. An abort then stops it at once.
+/// Reverse run begins where the path stopped, at first too slowly to be seen. An abort then stops it at once.
 TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing) {
     constexpr double SEEN = 1e-9, NOTHING = 2e-6;
     int judged = 0;
@@ -199,7 +199,7 @@ TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing) {
     EXPECT_GT(judged, 2);
 }
 
-/// A program that waits for something else knows the end of its last move as the place where it is.
+/// A program that waits treats the end of its last move as its current position.
 TEST_P(Reverse, NobodyGoesBackFromTheEndOfAllThatWasCommanded) {
     ReverseRig rig(GetParam());
     ASSERT_TRUE(rig.finish(rig.zigzag(4), 30));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine whose screw has errors and play, judged at its slide, which the controller never sees.
+// A machine whose screw has errors and play, checked at its slide, which the controller cannot measure.
 #include <cmath>
 #include <random>
 
@@ -18,7 +18,7 @@ using ::mw::testing::MotionRig;
 constexpr double PI = 3.14159265358979323846;
 constexpr double V = 100, A = 1000, J = 30000;
 
-/// A nut with play on a screw with a long wave, a drift and an error of each turn.
+/// A nut with play on a screw with a long wave, a drift and an error per revolution.
 struct Slide {
     double play = 0.03;
     double position = 0;
@@ -30,7 +30,7 @@ struct Slide {
         const double screw = motor + error(motor);
         position = std::clamp(position, screw - play / 2, screw + play / 2);
     }
-    /// How much the error may differ from a straight line between marks, and between two places of a motor
+    /// Maximum deviation of the error from a straight line between marks, and between two motor positions
     /// that are as far apart as the correction is large.
     double error_of_table(double pitch) const {
         double steepest = 0, most_bent = 0, largest = 0;
@@ -45,8 +45,8 @@ struct Slide {
     }
 };
 
-/// Measures the slide at each mark, coming from below and from above. `offset`: between the numbers of the
-/// joint and those of the motor.
+/// Measures the slide at each mark, approached from below and above. `offset`: difference of joint and motor
+/// positions.
 std::vector<LoadCompensation> measure(double play, double pitch, double offset = 0) {
     std::vector<LoadCompensation> points;
     const int count = static_cast<int>(700 / pitch) + 1;
@@ -88,8 +88,8 @@ struct ScrewRig : MotionRig {
     }
 };
 
-/// Deviation of the slide from its command, in motion and at standstill, except for the time in which the
-/// backlash is compensated after a reversal.
+/// Deviation of the slide from its command, in motion and at standstill, except while backlash is compensated
+/// after a reversal.
 struct Judgement {
     double worst = 0, worst_at_rest = 0;
     int judged = 0, left_out = 0, at_rest = 0, reversals = 0;
@@ -109,7 +109,7 @@ Judgement judge(ScrewRig &rig, double zero, int moves) {
         const int cycles = 100 + (n * 331) % 2500;
         for (int i = 0; i < cycles; ++i) {
             rig.go();
-            // The slide follows what was commanded in the cycle before the last.
+            // The slide follows the command of two cycles ago.
             const double now = rig.status().joint[0].pos_cmd;
             rig.slide.follow(rig.out->joint[0].motor_pos_cmd);
             const int way = now > before ? 1 : now < before ? -1 : direction;
@@ -134,8 +134,8 @@ Judgement judge(ScrewRig &rig, double zero, int moves) {
     return out;
 }
 
-/// On the way. With a jerk limit a change of the slope of the table takes time: half of the joint's jerk is
-/// left for it.
+/// Bound during motion. With a jerk limit a change of slope takes time: half of the joint jerk is reserved
+/// for it.
 double bound_of(const Slide &slide, double pitch, bool isJerkLimited) {
     constexpr double STEEPEST = 2.1e-3;  // of the errors
     const double change = 2 * STEEPEST * V;
@@ -172,7 +172,7 @@ TEST_P(Screw, WithoutATableTheSlideIsNot) {
 TEST_P(Screw, HomedByASwitchOnTheSlideThatIsWhereItsZeroIs) {
     ScrewRig rig(GetParam());
     constexpr double PITCH = 1, TRIP = -12, HOME_OFFSET = -5;
-    constexpr double ZERO = TRIP - HOME_OFFSET;  // of the joint, at the slide
+    constexpr double ZERO = TRIP - HOME_OFFSET;  // of the joint, measured at the slide
     rig.set(Parameter::JOINT_HOME_SEARCH_VEL, 0, -20);
     rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, -0.5);
     rig.set(Parameter::JOINT_HOME_OFFSET, 0, HOME_OFFSET);
@@ -185,7 +185,7 @@ TEST_P(Screw, HomedByASwitchOnTheSlideThatIsWhereItsZeroIs) {
     rig.send(Enable{});
     rig.step(2);
     rig.send(Home{-1});
-    // The jerk is not limited where a switch ends a move.
+    // The jerk is not limited if a switch ends a move.
     LimitChecker homing({{1.5 * V, 1.5 * A}}, MotionRig::T);
     for (int i = 0; i < 30000 && !rig.status().isAllHomed; ++i) {
         rig.step();
@@ -237,7 +237,7 @@ TEST(ScrewTables, ANewTableMovesNothing) {
     EXPECT_NEAR(rig.status().joint[0].pos_cmd, place, 1e-12);
 }
 
-/// By play and by a table.
+/// Parameter: table instead of play.
 class TakeUp : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(OfPlayAndOfATable, TakeUp, ::testing::Bool());
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine with a spindle that has inertia and an encoder, and a judge of how the tool keeps to it. The
-// judge evaluates the rotor's true angle at the instant at which the commanded position is due; it does not
-// use what motion calculates from the encoder.
+// A machine with a spindle that has inertia and an encoder, and a judge of the synchronisation of the tool.
+// The judge evaluates the rotor's true angle at the time of the commanded position; it does not use values
+// that motion calculates from the encoder.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct SpindleBench {
 
     struct Sample {
         double x = 0, z = 0;
-        double turns = 0, speed = 0;  ///< of the rotor: the truth
+        double turns = 0, speed = 0;  ///< true values of the rotor
         double command_rpm = 0;
         std::array<double, MAX_JOINTS> joints{};
         geometry::Pose pose;  ///< of a machine whose joints are not axes
@@ -29,7 +29,7 @@ struct SpindleBench {
     testing::MotionRig rig;
     plants::SpindlePlant plant;
     const kinematics::Kinematics *model = nullptr;  ///< null: joints are X Y Z
-    geometry::Pose base;                            ///< X and Z of moves and samples count from it
+    geometry::Pose base;                            ///< zero of X and Z of moves and samples
     std::function<double(const Sample &)> load = [](const Sample &) { return 0.0; };
     bool isDriveDead = false;  ///< the drive keeps its last command
     std::vector<Sample> samples;
@@ -38,7 +38,7 @@ struct SpindleBench {
         : rig("XYZ", VELOCITY, ACCELERATION), plant(traits) {
         begin(isJerkLimited);
     }
-    /// A machine whose joints are not axes; they begin at `start`.
+    /// A machine whose joints are not axes; `start` sets the joint positions.
     SpindleBench(const kinematics::Kinematics &kinematics, const std::vector<double> &start,
                  const plants::SpindleTraits &traits, bool isJerkLimited)
         : rig(kinematics, static_cast<int>(start.size()), VELOCITY, ACCELERATION), plant(traits),
@@ -53,7 +53,7 @@ struct SpindleBench {
         base = rig.status().carte_pos_cmd;
     }
 
-    /// Reports joints that exceeded their limits.
+    /// Lists joints that exceeded their limits.
     std::string limit_report() {
         const testing::AxisLimit limit{VELOCITY, ACCELERATION, jerk_};
         testing::LimitChecker checker(
@@ -102,7 +102,7 @@ struct SpindleBench {
         const CommandId end = rig.send_path(Flush{});
         const bool isDone =
             rig.run_until([&] { return rig.answer_to(end) != nullptr; }, max_s) && rig.isDone(end);
-        rig.step(3);  // a sample is complete in the cycle after
+        rig.step(3);  // a sample is complete one cycle later
         return isDone;
     }
 
@@ -127,7 +127,7 @@ struct SpindleBench {
             s.joints[j] = r.out->joint[j].motor_pos_cmd;
         }
         geometry::Pose pose =
-            r.status().carte_pos_cmd;  // where an inverse alone is known, iteration begins there
+            r.status().carte_pos_cmd;  // if only an inverse is known, iteration starts there
         if (model != nullptr) {
             model->forward(s.joints.data(), pose);
         }
@@ -174,17 +174,17 @@ inline plants::SpindleTraits tap_spindle(double seconds_to_1000_rpm = 0.5) {
     return traits;
 }
 
-/// What a hole was like, by the truth.
+/// True properties of a hole.
 struct Hole {
     bool isMade = false;
-    bool isOut = false;   ///< the spindle has turned back and forward again
+    bool isOut = false;   ///< the spindle has reversed twice
     double bottom = TOP;  ///< lowest Z
     double top = -1e9;    ///< maximum Z during the retract
-    double farthest = 0;  ///< of Z from the helix, through both reversals, over the pitch
+    double farthest = 0;  ///< maximum distance of Z from the helix during both reversals, over the pitch
     double back_rpm = 0;  ///< maximum speed during the retract
 };
 
-/// Of the samples from `from` on, once the tool is 4 deep. `sense`: of the spindle on the way in.
+/// From samples after `from`, once the tool is 4 deep. `sense`: spindle direction during the feed in.
 inline Hole hole_of(const std::vector<SpindleBench::Sample> &s, std::size_t from, double pitch,
                     double sense = 1) {
     Hole hole;
@@ -212,12 +212,12 @@ inline Hole hole_of(const std::vector<SpindleBench::Sample> &s, std::size_t from
     return hole;
 }
 
-/// Of a stretch of samples cut along Z with a lead: where its helix passes Z 0, and how far it leaves it.
+/// For samples of a cut along Z with a lead: the phase of its helix at Z 0, and the maximum deviation.
 struct Helix {
     double phase = 0;     ///< turn of the rotor at Z 0, the median [turns]
     double farthest = 0;  ///< from it [turns]
 };
-/// Z falls by `lead` a turn. `from`, `to`: samples.
+/// Z falls by `lead` per revolution. `from`, `to`: samples.
 inline Helix helix_of(const std::vector<SpindleBench::Sample> &samples, std::size_t from, std::size_t to,
                       double lead) {
     std::vector<double> phases;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the status reports of settings and of the path, and that every reader gets what the controller
-// reports.
+// Tests the status of settings and path, and that each reader gets what the controller reports.
 #include <cstring>
 #include <numbers>
 
@@ -39,7 +38,7 @@ TEST(StatusOfMotion, SettingsAreShownAsTheyAreNow) {
     check(1, -31, 32, 33, 34);
 }
 
-/// A rapid, a feed, an arc and a probing move, each checked in motion.
+/// Status of a rapid, a feed, an arc and a probing move, during the motion.
 TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast) {
     MotionRig rig;
     rig.ready();
@@ -113,7 +112,7 @@ TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast) {
     EXPECT_EQ(s.queue_depth, 0U);
 }
 
-/// Published in parts: a reader has what the controller reports, regardless of what has changed.
+/// The status is published in parts: a reader gets what the controller reports, whatever has changed.
 TEST(StatusOfMotion, ReadersHaveTheWholeOfIt) {
     MotionRig rig;
     auto reader = std::make_unique<PublishedStatus::Copy>();
@@ -153,8 +152,8 @@ TEST(StatusOfMotion, ReadersHaveTheWholeOfIt) {
     EXPECT_EQ(reader->value.axis[1].max_limit, 5);
 }
 
-/// More moves than the planner can take: the status shows it while they wait, whether they are driven then or
-/// a stop discards them.
+/// More moves than the planner can accept: the status shows it while they wait, until they are executed or
+/// discarded by a stop.
 TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom) {
     constexpr int MOVES = 5000;
     for (const bool isAborted : {false, true}) {
@@ -184,7 +183,7 @@ TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom) {
     }
 }
 
-/// Off, there is no move.
+/// There is no move while off.
 TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff) {
     MotionRig rig;
     rig.ready();
@@ -205,7 +204,7 @@ TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff) {
     EXPECT_EQ(s.distance_to_go, 0);
 }
 
-/// A trace has a sample for each cycle with what the status of that cycle says.
+/// A trace has one sample for each cycle with the values of that cycle's status.
 TEST(StatusOfMotion, ATraceSaysOfEachCycleWhatItsStatusSays) {
     MotionRig rig;
     rig.ready();

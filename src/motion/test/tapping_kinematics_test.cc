@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Rigid tapping where joints are not axes: judged by the rotor's true angle and by the command of each joint.
+// Rigid tapping if joints are not axes: checked by the rotor's true angle and each joint command.
 #include <cstdio>
 #include <random>
 
@@ -41,7 +41,7 @@ struct TapMachine {
     double x;
 };
 
-/// Start positions with curves of joints as well as straight lines.
+/// Start positions with curved and straight joint paths.
 const std::vector<TapMachine> &tap_machines() {
     static const kinematics::CoreXy corexy;
     static const kinematics::LinearDelta delta;
@@ -100,7 +100,7 @@ TEST_P(KinematicsTapping, ZFollowsTheAngleAndNoJointDoesMoreThanItCan) {
     EXPECT_EQ(bench.limit_report(), "");
 }
 
-/// Joints with separate limits, a hole in any direction, perhaps stopped during the tap.
+/// Joints with separate limits, a hole in any direction, possibly stopped during the tap.
 class RandomTap {
   public:
     RandomTap(const TapMachine &machine, unsigned seed)
@@ -182,7 +182,7 @@ class RandomTap {
             }
             EXPECT_NEAR(geometry::norm(way - direction_ * x), 0, 1e-6) << "on its line";
             farthest = std::max(farthest, x);
-            // Once the spindle is commanded to reverse the tool must be on its helix.
+            // When the spindle is commanded to reverse, the tool must be on its helix.
             const double phase = x / pitch - sense * s.turns;
             isTold = isTold || sense * s.command_rpm < 0;
             helix = isTold ? helix : phase;
@@ -222,12 +222,12 @@ TEST(KinematicsTappingCampaign, AnyHoleOnAnyMachineIsMadeWithinItsJointsLimitsOr
         const RandomTap::Outcome out = tap.run();
         made += out.isMade ? 1 : 0;
         refused += out.isRefused ? 1 : 0;
-        // With jerk limits what is foreseen to be 0.1 off is taken; of 4,000 the worst was 0.141.
+        // With jerk limits a predicted deviation of 0.1 is accepted; the maximum of 4,000 taps was 0.141.
         EXPECT_LE(out.farthest, out.isJerkLimited ? 0.145 : 0.02);
     }
     std::printf("%d taps, %d made, %d rejected\n", count, made, refused);
     EXPECT_GT(made, count / 4);
-    EXPECT_GE(refused, count / 60);  // one in twenty, and a short run may have none
+    EXPECT_GE(refused, count / 60);  // one in twenty; a short run may have none
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, KinematicsTapping,

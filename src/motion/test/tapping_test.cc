@@ -14,7 +14,7 @@ namespace {
 
 class Tapping : public ::testing::TestWithParam<bool> {
   protected:
-    /// Taps from TOP to BOTTOM at X and checks all of it. `sense`: of the spindle towards the bottom.
+    /// Taps from TOP to BOTTOM at X and checks the hole. `sense`: spindle direction towards the bottom.
     static Hole tap(SpindleBench &bench, double x, double pitch = PITCH, double sense = 1, double scale = 1) {
         bench.rapid(x, TOP);
         EXPECT_TRUE(bench.finish());
@@ -120,7 +120,7 @@ TEST_P(Tapping, OverridesAndHoldsWaitForItsEnd) {
 }
 
 TEST_P(Tapping, AHoldBeforeItBeginsLeavesItWhole) {
-    // Slow enough that the tool waits for a while before the helix comes.
+    // Slow enough that the tool waits for the helix.
     SpindleBench bench(tap_spindle(), GetParam());
     bench.spin(30);
     bench.rapid(10, TOP);
@@ -132,7 +132,7 @@ TEST_P(Tapping, AHoldBeforeItBeginsLeavesItWhole) {
         bench.rig.step(3000);
         bench.rig.send(Resume{});
         ASSERT_TRUE(bench.rig.run_until([&] { return bench.rig.isDone(id); })) << at;
-        bench.rig.step(100);  // with jerk limits it gets the command half an averaging time before it stops
+        bench.rig.step(100);  // with jerk limits, the command arrives half an averaging time before it stops
         EXPECT_EQ(bench.samples.back().z, TOP) << at;
         EXPECT_EQ(bench.samples.back().command_rpm, 30) << at;
     }
@@ -146,7 +146,7 @@ class StoppedTapping : public ::testing::TestWithParam<std::tuple<Stop, bool>> {
 
 TEST_P(StoppedTapping, InAnyPhaseStandsWithinItsLimitsAndNeverRestartsTheSpindle) {
     const auto [stop, isJerkLimited] = GetParam();
-    // A whole tap takes some 4.5 s.
+    // A whole tap takes about 4.5 s.
     for (int at = 10; at < 4800; at += 331) {
         SpindleBench bench(tap_spindle(), isJerkLimited);
         testing::MotionRig &rig = bench.rig;
@@ -182,7 +182,7 @@ TEST_P(StoppedTapping, InAnyPhaseStandsWithinItsLimitsAndNeverRestartsTheSpindle
         if (!isDead) {
             EXPECT_EQ(bench.limit_report(), "") << at;
         }
-        // No next command turns anything on.
+        // No later command switches something on.
         rig.in.isEnableOn = true;
         rig.in.spindle[0].isAmpFaulted = false;
         rig.channels->isTaskDead.store(0);
@@ -295,7 +295,7 @@ TEST_P(Tapping, ASpindleThatDoesNotTurnBackOrJumpsEndsInAStop) {
         EXPECT_TRUE(kinds(bench.rig).contains(FaultKind::TAP_LOST));
         EXPECT_FALSE(bench.rig.status().isEnabled);
         EXPECT_EQ(bench.rig.out->spindle[0].speed_rpm, 0);
-        // Two turns and twice the overrun of the spindle.
+        // Two revolutions and twice the overrun of the spindle.
         const double room = 2 + 1000.0 / 60 * 1000.0 / 60 / tap_spindle().ramp;
         EXPECT_GE(bench.samples.back().z, BOTTOM - room * PITCH) << "not on and on";
         EXPECT_EQ(bench.limit_report(), "");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs of axes with jerk limits on machines whose joints are not axes: velocity, acceleration and jerk of
-// every joint at every sample, through begin, change and end of jogs of all kinds, and the jogs end where
-// they were sent. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
+// Jogs of axes with jerk limits on machines whose joints are not axes: checks velocity, acceleration and jerk
+// of every joint at every sample, for starts, changes and ends of jogs of all types, and that jogs reach
+// their targets. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST select the seeds.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,10 +32,10 @@ struct JerkyMachine {
     const kinematics::Kinematics &model;
     const char *axes;
     std::vector<double> start;
-    double reach = 100;  ///< of jogs that have a target [machine units, degrees]
+    double reach = 100;  ///< distance of jogs to a target [machine units, degrees]
 };
 
-/// Joints as slow and as gentle as drawn.
+/// Joints with random limits.
 class JerkLimitedTeleop {
   public:
     JerkLimitedTeleop(const JerkyMachine &machine, unsigned seed)
@@ -150,7 +150,7 @@ class JerkLimitedTeleop {
             rig_.in.axis_wheel[static_cast<std::size_t>(wheel_)].counts += whole(-10, 20);
         }
     }
-    /// A stop of all motion.
+    /// Expects a stop of all motion.
     void expect_stop() {
         rig_.send(SetScale{Scale::FEED, 0, 1});
         rig_.send(Abort{++rig_.epoch});
@@ -159,7 +159,7 @@ class JerkLimitedTeleop {
         }
         EXPECT_TRUE(isAtRest());
     }
-    /// And then jogs go where they are sent.
+    /// Expects that jogs reach their targets.
     void expect_arrival() {
         const int n = axis();
         const double from = rig_.status().carte_pos_cmd[n];
@@ -257,8 +257,7 @@ TEST(TeleopJerk, AHexapodKeepsJointJerk) {
     jog_smoothly({hexapod, "XYZABC", start, 4}, 1);
 }
 
-/// The limit of the joints is lowered while two axes move at the highest speed: they slow down to an even
-/// share.
+/// The joint limit is lowered while two axes move at maximum speed: they slow down to equal shares.
 TEST(TeleopJerk, AxesShareALimitThatIsLoweredWhileTheyMove) {
     kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
@@ -287,7 +286,7 @@ TEST(TeleopJerk, AxesShareALimitThatIsLoweredWhileTheyMove) {
     EXPECT_EQ(rig.joint_report(), "");
 }
 
-/// One that comes to its target with all of its acceleration keeps it: the other begins later.
+/// An axis that arrives with all of its acceleration keeps it; the other axis starts later.
 class NoOvershoot : public ::testing::TestWithParam<bool> {};
 
 TEST_P(NoOvershoot, OfAJogWhereAnotherBegins) {
@@ -303,7 +302,7 @@ TEST_P(NoOvershoot, OfAJogWhereAnotherBegins) {
         }
         rig.step(4);
         rig.ready(Mode::TELEOP);
-        rig.send(JogAbsolute{{false, 1}, 20, 1});  // both have been at work before
+        rig.send(JogAbsolute{{false, 1}, 20, 1});  // both axes have moved before
         rig.send(JogAbsolute{{false, 0}, 20, 1});
         rig.step(1000);
         rig.send(JogAbsolute{{false, 0}, 1000, 80});
@@ -321,12 +320,12 @@ TEST_P(NoOvershoot, OfAJogWhereAnotherBegins) {
 }
 INSTANTIATE_TEST_SUITE_P(TeleopJerk, NoOvershoot, ::testing::Bool());
 
-/// From rest to a speed: the least time, in which half of that way is gone.
+/// Minimum time from standstill to a speed; the travel is half of the speed multiplied by it.
 double ramp_s(double to, double a, double j) {
     return to > a * a / j ? to / a + a / j : 2.0 * std::sqrt(to / j);
 }
 
-/// From rest to rest over `way` within v, a, j: the least time.
+/// Minimum time from standstill to standstill over `way` within v, a, j.
 double least_time_s(double way, double v, double a, double j) {
     if (v * ramp_s(v, a, j) <= way) {
         return ramp_s(v, a, j) + way / v;
@@ -340,8 +339,8 @@ double least_time_s(double way, double v, double a, double j) {
     return 2.0 * ramp_s(low, a, j);
 }
 
-/// Tower 0 of a delta is across X: its joint hardly moves with X where a jog begins, and a quarter as fast as
-/// X where it stops.
+/// Tower 0 of a delta is perpendicular to X. Its joint hardly moves where the jog begins, and a quarter as
+/// fast as X where it stops.
 TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes) {
     kinematics::LinearDelta delta;
     delta.set(0, 130.25);
@@ -363,13 +362,13 @@ TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes) {
     for (rig.step(2); cycles < 10000 && rig.out->axis[0].isTeleopPlanning; ++cycles) {
         rig.step();
     }
-    constexpr double JOINT_PER_X = 0.36, SPEED = 60;  // no more than that within the way
+    constexpr double JOINT_PER_X = 0.36, SPEED = 60;  // at most this within the distance
     EXPECT_LE(cycles * MotionRig::T, 2.2 * ramp_s(SPEED, 200 / JOINT_PER_X, JERK / JOINT_PER_X) + 0.02);
     EXPECT_EQ(rig.joint_report(), "");
     rig.forgive_joints();
 }
 
-/// Along X of a CoreXY both belts do what the axis does, so the least time is known.
+/// Along X of a CoreXY both belts move like the axis, so the minimum time is known.
 TEST(TeleopJerk, AJogOfAStraightJointLineTakesTheLeastTime) {
     for (const double acceleration : {200.0, 1000.0, 3000.0}) {
         for (const double per_s : {3.0, 10.0, 50.0}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Soft limits of axes on machines whose joints are not axes, while several axes are jogged at once, begin,
-// stop and turn at random: none leaves its limits, with jerk limits or without, and all come where they are
-// sent. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
+// Soft limits of axes on machines whose joints are not axes, while several axes are jogged, started, stopped
+// and reversed at random: none exceeds its limits, with and without jerk limits, and all reach their targets.
+// MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST select the seeds.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -86,7 +86,7 @@ class JogsNearLimits {
             rig_.send(JogStop{{false, axis}});
         }
     }
-    /// How far the axes have gone in the cycle.
+    /// Travel of the axes in the cycle.
     double expect_within(int n) {
         double way = 0;
         for (std::size_t i = 0; i < axes_.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs of axes on machines whose joints are not axes: joints within their limits of speed, acceleration and
-// place at every sample. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST choose the seeds.
+// Jogs of axes on machines whose joints are not axes: joints stay within their limits of speed, acceleration
+// and position at every sample. MW_CAMPAIGN_SEEDS and MW_CAMPAIGN_FIRST select the seeds.
 #include <random>
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ class TeleopCampaign {
         rig_.ready(Mode::TELEOP);
         EXPECT_EQ(rig_.status().mode, Mode::TELEOP);
     }
-    /// Jogs of up to three axes at a time, begun, changed and stopped at random.
+    /// Jogs of up to three axes at a time, started, changed and stopped at random.
     void run() {
         double way = 0;
         geometry::Pose last = rig_.status().carte_pos_cmd;
@@ -96,13 +96,13 @@ TEST(Teleop, TiltedRotaryTableKeepsJointLimits) {
     jog_all(table, 5, "XYZAC");
 }
 
-/// Machines with random limits; in both directions of one of two axes, to its soft limit and not past it.
+/// Machines with random limits: in both directions of one of two axes, up to its soft limit and not past it.
 struct ToSoftLimits {
     const kinematics::Kinematics &model;
     int joints;
     std::array<int, 2> axes;
     bool isJerkLimited;
-    int before_first = 0;  ///< seeds that are passed over
+    int before_first = 0;  ///< number of skipped seeds
 };
 
 void jog_to_soft_limits(const ToSoftLimits &machine) {
@@ -135,7 +135,7 @@ void jog_to_soft_limits(const ToSoftLimits &machine) {
             rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
             rig.set(Parameter::TRAJ_MAX_JERK, 0, 1e6);
         }
-        // Away from its centre a table has to move along with what turns.
+        // Away from its centre a rotary table must move along with the rotation.
         for (int j = 0; machine.isJerkLimited && j < 3; ++j) {
             rig.in.joint[static_cast<std::size_t>(j)].motor_pos_fb = 40;
             rig.set(Parameter::JOINT_HOME_OFFSET, j, 40);
@@ -181,8 +181,8 @@ TEST(Teleop, ATableComesToRestAtItsSoftLimitsWithJerkLimits) {
     jog_to_soft_limits({table, 5, {geometry::AXIS_A, geometry::AXIS_C}, true});
 }
 
-/// A wheel that is turned slowly commands it a little further each time, so that it brakes and accelerates at
-/// the same average speed. It never moves back meanwhile.
+/// A wheel that turns slowly commands small steps, so the axis brakes and accelerates at the same average
+/// speed. It never moves backwards.
 TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack) {
     const kinematics::TiltingHead head;
     MotionRig rig(head, 6, 60, 630);
@@ -206,7 +206,7 @@ TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack) {
     wheel.isEnabled = true;
     wheel.scale = 3.8e-3;
     const auto place = [&] { return rig.status().carte_pos_cmd[geometry::AXIS_B]; };
-    // The more the tool is tilted, the more of the slides' acceleration the rotation takes.
+    // With more tilt of the tool, the rotation uses more of the slides' acceleration.
     for (const double from : {-302.4, -250.0, -50.0, 20.0, 70.0, 140.0, 280.0, 301.5, 302.362476}) {
         rig.send(JogAbsolute{{false, geometry::AXIS_B}, 100, from});
         ASSERT_TRUE(rig.run_until([&] { return std::abs(place() - from) < 1e-9; }, 60));
@@ -240,7 +240,7 @@ TEST(Teleop, ACoreXyJogGoesAsFastAsItsJointsAllow) {
     EXPECT_EQ(rig.joint_report(), "");
 }
 
-/// Keeps how far out in X the joints of a pose were asked for.
+/// Records the maximum X for which joints were requested.
 class AskedKinematics final : public kinematics::Kinematics {
   public:
     mutable double farthest = 0;
@@ -258,7 +258,7 @@ class AskedKinematics final : public kinematics::Kinematics {
     kinematics::CoreXy model_;
 };
 
-/// The edge of the workspace beyond the place where it can stop does not matter to a jog.
+/// The edge of the workspace past the stopping point does not affect a jog.
 TEST(Teleop, JointsAreExaminedNearAJogOnly) {
     constexpr double SENT = 400, NEAR = 20;
     AskedKinematics model;

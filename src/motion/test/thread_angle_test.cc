@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where threads begin on the turn of a spindle that has inertia and an encoder of 4,096 counts, and whether
-// they keep to it: measured against the rotor's true angle.
+// Start angles of threads on a spindle that has inertia and an encoder of 4,096 counts, and deviations during
+// the thread, measured against the rotor's true angle.
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ plants::SpindleTraits mill_spindle() {
 class ThreadAngle : public ::testing::TestWithParam<bool> {
   protected:
     struct Pass {
-        std::size_t first = 0, met = 0, last = 0;  ///< samples: leaves the start, is well in, ends
+        std::size_t first = 0, met = 0, last = 0;  ///< samples: leaves the start, is synchronous, ends
     };
     /// One pass at the depth `x`, which loads the spindle from Z -6 on within 0.2 s.
     Pass cut(SpindleBench &bench, double x, double load = 0) {
@@ -63,7 +63,7 @@ TEST_P(ThreadAngle, IsTheSameForAllPassesFrom100To3000Rpm) {
     for (const double rpm : {100.0, 300.0, 500.0, 1000.0, 1700.0, 2400.0, 3000.0}) {
         bench.spin(rpm);
         for (const double x : {10.0, 9.8, 9.65}) {
-            bench.rig.step(37 + static_cast<int>(rpm) % 29);  // a pass may be asked for at any moment
+            bench.rig.step(37 + static_cast<int>(rpm) % 29);  // a pass may start at any time
             const Pass pass = cut(bench, x);
             const Helix helix = helix_of(bench.samples, pass.met, pass.last, LEAD);
             first = std::isnan(first) ? helix.phase : first;
@@ -105,8 +105,9 @@ TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass) {
                 GetParam() ? " with jerk limits" : "", at_start / DEGREE, meanwhile / DEGREE);
 }
 
-/// What few counts make of the speed puts the helix on either side of a tool that is still slower: it is not
-/// met before the speed is right, since what is gained from there is a tenth of the acceleration.
+/// With few counts the measured speed scatters, and the calculated helix is on both sides of a slower tool.
+/// Synchronisation must not be reported before the speed is right, because the correction has only a tenth of
+/// the acceleration.
 TEST_P(ThreadAngle, IsNotTakenForMetByFewCountsWhileSpeedIsGained) {
     constexpr double GENTLE = 90;
     for (const int counts : {500, 1024, 4096}) {
@@ -134,7 +135,7 @@ TEST_P(ThreadAngle, AThreadWithoutAPartAtItsLeadIsRefusedBeforeItMoves) {
     bench.spin(2000);
     bench.rapid(10, PASS_TOP);
     ASSERT_TRUE(bench.finish());
-    // 100 mm/s takes more than 4 mm to gain and 4 mm to lose.
+    // Accelerating to and braking from 100 mm/s takes more than 4 mm each.
     const CommandId id = bench.thread(10, PASS_TOP - 6, 3);
     bench.rig.send_path(Flush{});
     bench.rig.step(3000);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Form of threads and taps by the whole of motion with a spindle by its torques, which shares nothing with
-// the follower. Judged by the true angle of its rotor. The printed figures are those of
-// docs/integrator/spindles.md.
+// Form of threads and taps by the whole of motion with a torque model of the spindle, which is independent of
+// the follower. Checked by the true angle of the rotor. docs/integrator/spindles.md contains the printed
+// figures.
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct FormBench {
     };
     testing::MotionRig rig{"XYZ", SpindleBench::VELOCITY, SpindleBench::ACCELERATION};
     plants::DrivenSpindle spindle;
-    double cut = 0;  ///< torque of the cut below Z 0, which grows within a revolution
+    double cut = 0;  ///< torque of the cut below Z 0, which increases within a revolution
     std::vector<double> shown;
     std::vector<Sample> samples;
 
@@ -62,7 +62,7 @@ struct FormBench {
         rig.line(end, 0, PathMode::EXACT_STOP);
         EXPECT_TRUE(finish());
     }
-    /// A pass as G76 makes it. Returns the samples between `from` and `to` in Z.
+    /// A pass like that of G76. Returns the samples between `from` and `to` in Z.
     std::vector<Sample> pass(double x, double torque, double from, double to) {
         rapid(x, FORM_START);
         samples.clear();
@@ -127,7 +127,7 @@ double phase_of(const FormBench::Sample &s, double pitch) {
 
 struct Form {
     double scatter_deg = 0;  ///< of the start angles of all passes and speeds, before the cut
-    double form_deg = 0;     ///< largest deviation within a pass from its start angle, with the cut
+    double form_deg = 0;     ///< maximum deviation from the start angle within a pass, with the cut
 };
 
 Form thread_form(const plants::DrivenSpindleTraits &traits, bool isJerkLimited) {
@@ -164,8 +164,8 @@ Form thread_form(const plants::DrivenSpindleTraits &traits, bool isJerkLimited) 
 struct Taps {
     double off = 0;          ///< from the helix through the reversal at the bottom [rev]
     double first = 0;        ///< error of the bottom of the first hole [rev]
-    double other_speed = 0;  ///< largest one of a first hole at another speed [rev]
-    double same_speed = 0;   ///< largest one of later holes [rev]
+    double other_speed = 0;  ///< maximum of a first hole at another speed [rev]
+    double same_speed = 0;   ///< maximum of later holes [rev]
     int made = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Servo and planner in separate threads, at any pace that the machine gives them: the limits hold, the path
-// is driven to its exact end, and the thread sanitizer checks both.
+// Servo and planner in separate threads at any relative speed: the limits are kept, the path is driven
+// exactly to its end, and the thread sanitizer checks both.
 #include <atomic>
 #include <thread>
 

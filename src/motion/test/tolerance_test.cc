@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// With jerk limits a path is made for its tolerance: a program that changes to a much smaller one gets a
-// separate path for it, from a stop.
+// With jerk limits a path is planned for its tolerance. A program that changes to a much smaller tolerance
+// gets a new path for it, from a stop.
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +16,7 @@ using testing::MotionRig;
 
 constexpr double V = 100, A = 2000, J = 10000;
 
-/// Seconds of a coarse line and back, then a circle of chords within 0.01.
+/// Time [s] of a coarse line and back, then a circle of chords within 0.01.
 double run_program(double first_tolerance) {
     MotionRig rig("XYZ", V, A);
     std::vector<testing::AxisLimit> limits;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whether probe and tool setter have been tested: their contact must be detected once before the first cycle.
+// Checks that probe and tool setter work: their contact must be detected once before the first cycle.
 import type { MachineStatus } from './status';
 
 /** The probe moves with the spindle, the setter is on the table; both use motion.probe-input. */

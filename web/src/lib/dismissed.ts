@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Messages that this browser has dismissed, because a server sends the last messages again to a reloaded
-// page.
+// Messages dismissed in this browser. A server sends the last messages again to a reloaded page.
 
 export interface Dismissable {
   kind: string;

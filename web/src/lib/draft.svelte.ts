@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Unsaved changes of the editor. They belong to the page, so another view of it does not lose them.
+// Unsaved changes of the editor. They belong to the page and are kept when another view is shown.
 import { openProgram } from './actions';
 import { uploadProgram } from './files';
 import { machine } from './machine.svelte';

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Numbers as persons write and read them (A8): one comma or point separates decimals. Also sums and
-// fractions.
+// Numbers as people write them: one comma or point as decimal separator (A8). Also sums and fractions.
 
 /** Blanks that persons and spreadsheets put between groups of three digits: plain, no-break, narrow and thin ones. */
 const GROUPS = /^([+-]?\d{1,3})(?:[ \u00a0\u2007\u2009\u202f]\d{3})+(?=$|[.,])/;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The reason why something is not possible now, shown at the operator's point of view for the time needed to
-// read it.
+// The reason why a command is disabled. It is shown at the touched button long enough to be read.
 import type { Gate } from './gates';
 
 const SHOWN_MS = 8000;

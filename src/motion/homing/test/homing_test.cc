@@ -211,7 +211,7 @@ TEST(Homing, AnIndexerHasThirtySecondsToUnlockAndNoCycleLess) {
         p.isLockingIndexer = true;
         m.homing.parameters(0) = p;
         for (int n = 0; n < (isSecondTime ? 700 : 0); ++n) {
-            m.step();  // a previous stop must not matter
+            m.step();  // an earlier stop must not matter
         }
         m.homing.start(0);
         const int cycles = static_cast<int>(Homing::LONGEST_LOCKING_S / T);

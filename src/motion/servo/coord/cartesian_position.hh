@@ -13,25 +13,25 @@ class CartesianPosition {
     const geometry::Pose &cmd() const noexcept { return cmd_; }
     /// Measured.
     const geometry::Pose &fb() const noexcept { return fb_; }
-    /// Of X Y Z [machine units/s].
+    /// Speed of X Y Z [machine units/s].
     double velocity() const noexcept { return velocity_; }
     bool isFbValid() const noexcept { return fb_valid_; }
 
-    /// The measured pose. Forward kinematics of an iterating model needs a homed machine. Where it fails, the
-    /// commanded pose is used.
+    /// The measured pose. Iterative forward kinematics need a homed machine. If they fail, the commanded pose
+    /// is used.
     [[gnu::hot]] void read_feedback(const kinematics::Kinematics &kinematics, const double *joints,
                                     bool areAllHomed) noexcept;
-    /// Joints are commanded; the commanded pose follows them where it is known.
+    /// The joints are commanded. The commanded pose follows them if the kinematics finds a pose.
     void follow_joints(const kinematics::Kinematics &kinematics, const double *joints, bool isKnown) noexcept;
-    /// The pose of joints that have just been homed. Iterating forward kinematics start from the previous
-    /// pose and, if that fails, from `first`: the lost position may be far away.
+    /// Finds the pose of joints that have just been homed. Iterative forward kinematics start from the
+    /// previous pose and, if that fails, from `first`, because the previous pose may be far away.
     void find_again(const kinematics::Kinematics &kinematics, const double *joints,
                     const geometry::Pose &first) noexcept;
     /// The pose is commanded.
     void follow_pose(const geometry::Pose &pose, double period_s) noexcept;
-    /// The stopped machine has another commanded pose, by other kinematics.
+    /// Sets the commanded pose of the stopped machine, for other kinematics.
     void set_cmd(const geometry::Pose &pose) noexcept { cmd_ = pose; }
-    /// Before homing: assumed position of an axis.
+    /// Sets the assumed position of an axis before homing.
     void assume(int axis, double position) noexcept { cmd_[axis] = fb_[axis] = position; }
 
     void fill(Status &status) const noexcept;

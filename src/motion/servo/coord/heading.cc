@@ -21,7 +21,7 @@ double turned(double degrees) noexcept {
     return low >= FULL_TURN_DEG ? low - FULL_TURN_DEG : low;
 }
 
-/// False without a direction in XY.
+/// False if there is no direction in XY.
 bool point(double x, double y, double &degrees) noexcept {
     if (x * x + y * y < LEAST_LENGTH * LEAST_LENGTH) {
         return false;
@@ -34,7 +34,7 @@ Vector cross(const Vector &a, const Vector &b) noexcept {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// The axis about which the arc runs counter-clockwise.
+/// The axis about which the arc is counter-clockwise.
 Vector axis_of(const trajectory::Primitive &arc) noexcept {
     Vector axis = cross(arc.u, arc.v);
     if (arc.omega < 0) {
@@ -43,7 +43,7 @@ Vector axis_of(const trajectory::Primitive &arc) noexcept {
     return axis;
 }
 
-/// Counter-clockwise seen from the positive end of the machine axis nearest to `axis`.
+/// True if counter-clockwise seen from the positive end of the machine axis nearest to `axis`.
 bool isCounterClockwise(const Vector &axis) noexcept {
     std::size_t largest = 0;
     for (std::size_t i = 1; i < axis.size(); ++i) {
@@ -65,7 +65,7 @@ int g_code_of(MotionType type, bool isArc, bool isLeft) noexcept {
     return G0;
 }
 
-/// An arc about Z: the centre is at right angles to the direction.
+/// An arc about Z: the centre is perpendicular to the direction.
 void follow_flat_arc(const trajectory::Primitive &arc, bool isLeft, const geometry::Pose &place,
                      Heading &out) noexcept {
     const double x = arc.base[0] - place[0], y = arc.base[1] - place[1];
@@ -89,7 +89,7 @@ void follow_arc(const trajectory::Primitive &arc, const Vector &axis, const geom
     for (int i = 0; i < 3; ++i) {
         const auto n = static_cast<std::size_t>(i);
         out_of_centre[n] -= along * axis[n];
-        out.centre[n] = arc.base[i] + along * axis[n];  // of a helix, it moves along
+        out.centre[n] = arc.base[i] + along * axis[n];  // the centre of a helix moves along its axis
     }
     out.isArc = true;
     out.radius = std::hypot(out_of_centre[0], out_of_centre[1], out_of_centre[2]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Direction of motion in the plane XY, and the current circle: for torches, knives and other devices that
-// follow a path from outside (pins motion.interp.L).
+// Direction of motion in the XY plane, and the current circle, for torches, knives and other devices that
+// follow the path (pins motion.interp.L).
 #pragma once
 
 #include "motion/interface/path_command.hh"
@@ -8,7 +8,7 @@
 
 namespace mw::motion {
 
-/// Inputs of a heading; the heading of a line is valid until they change.
+/// Inputs of a heading. The heading of a line remains valid until they change.
 struct HeadingOrigin {
     std::uint64_t path_id = 0;
     std::uint64_t move = 0;  ///< number of the primitive
@@ -17,19 +17,19 @@ struct HeadingOrigin {
     bool operator==(const HeadingOrigin &) const = default;
 };
 
-/// All 0 without a move.
+/// All values are 0 without a move.
 struct Heading {
     HeadingOrigin origin;
-    int g_code = 0;            ///< ten times that of the move: 0, 10, 20, 30; 380 of probe moves
+    int g_code = 0;            ///< ten times the code of the move: 0, 10, 20, 30; 380 for probe moves
     double direction_deg = 0;  ///< of the motion in XY, counter-clockwise from X; [0, 360)
-    double to_centre_deg = 0;  ///< from the tool to the centre of its arc; of a line, to its left
+    double to_centre_deg = 0;  ///< for an arc, from the tool to its centre; for a line, to its left
     bool isArc = false;
     double radius = 0;               ///< of the arc [machine units]
     std::array<double, 3> centre{};  ///< machine coordinates X Y Z
 };
 
-/// `place`: position of the tool on the move, machine coordinates without external offsets. A move without
-/// motion in X or Y keeps the directions `before`. [servo]
+/// `place`: position of the tool on the move in machine coordinates without external offsets. A move without
+/// motion in X or Y keeps the directions of `before`. [servo]
 Heading heading_of(const trajectory::Primitive &move, MotionType type, const geometry::Pose &place,
                    bool isReverse, const Heading &before) noexcept;
 

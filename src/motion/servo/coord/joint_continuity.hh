@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Checks whether the joint positions of a pose agree with the current ones, or the joints would jump.
+// Checks whether the joints would jump to the joint positions of a pose.
 #pragma once
 
 #include <array>
@@ -13,19 +13,19 @@ namespace mw::motion {
 /// One value per joint.
 using JointValues = std::array<double, MAX_JOINTS>;
 
-/// Limits of the joints in a servo cycle.
+/// Joint limits per servo cycle.
 struct JointStepLimit {
     const double *velocity = nullptr;  ///< limits, per joint [machine units or degrees/s]
     double period_s = 0;
     int num_joints = 0;
 };
 
-/// In Cartesian modes the pose commands the joints: true when the step to the joint positions of the pose is
+/// In Cartesian modes the pose commands the joints. True if the step to the joint positions of the pose is
 /// possible in one cycle.
 bool isWithinOneStep(const kinematics::Kinematics &kinematics, const geometry::Pose &pose,
                      const JointValues &here, const JointStepLimit &limit) noexcept;
-/// The planner has checked the joint limits of its moves, so a larger step comes from a change of a pin of
-/// the kinematics. Returns the joint that would jump, -1 for none.
+/// The planner has checked the joint limits of its moves, so a larger step is caused by a change of a
+/// kinematics pin. Returns the joint that would jump, -1 for none.
 int joint_that_jumps(const JointValues &positions, const JointValues &here,
                      const JointStepLimit &limit) noexcept;
 

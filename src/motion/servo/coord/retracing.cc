@@ -18,7 +18,7 @@ double square_xyz(const std::array<double, Changes::PADDED> &p) noexcept {
            p[geometry::AXIS_Z] * p[geometry::AXIS_Z];
 }
 
-/// Use of the limits by the largest changes.
+/// Fraction of the limits that the largest changes use.
 trajectory::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in) noexcept {
     trajectory::Retrace::Use use;
     const double per_s = 1.0 / in.period_s;
@@ -45,10 +45,10 @@ trajectory::Retrace::Use use_of(const Changes &changes, const RetraceLimits &in)
     return use;
 }
 
-/// True where reverse run is so slow that an immediate stop is within all limits: the path stopped there, and
-/// reverse run has the recorded speeds.
+/// True if reverse run is so slow that an immediate stop is within all limits. The path had stopped there,
+/// and reverse run has the recorded speeds.
 bool mayStopAtOnce(const Changes &last, const RetraceLimits &limits) noexcept {
-    // The stop of a step requires the jerk of twice the step and of its second difference.
+    // Stopping from a step requires a jerk of twice the step and of its second difference.
     constexpr double STEP_SHARE = 0.25, CHANGE_SHARE = 0.5;
     const double t = limits.period_s;
     const trajectory::Retrace::Use use = use_of(last, limits);
@@ -71,7 +71,7 @@ void Retracing::follow_drops(std::uint64_t drops) noexcept {
     }
 }
 
-/// Compares the changes recorded since the last call with the limits; this takes longer than recording.
+/// Compares the changes recorded since the last call with the limits. This takes longer than recording.
 void Retracing::include_changes(const RetraceLimits &limits) noexcept {
     retrace_.include(use_of(changes_, limits));
     changes_ = {};
@@ -101,7 +101,7 @@ bool Retracing::step(geometry::Pose &pose, const RetraceInputs &in, const Retrac
         stopping_ = false;
     }
     const bool isStill = in.isHoldWanted || path_left_ || in.isStopping;
-    // With ordinary braking it would move at the recorded speed of the path, visibly after the stop.
+    // With ordinary braking it would visibly move after the stop, at the recorded speed of the path.
     if (isStill && !stopping_ && retrace_.isMoving() && mayStopAtOnce(last_, limits)) {
         retrace_.stand();
     }

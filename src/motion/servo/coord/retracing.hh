@@ -12,10 +12,11 @@
 
 namespace mw::motion {
 
-/// Largest changes of coordinates since they were last compared with the limits: per cycle (`step`), and from
-/// one cycle to the next (`step_change`).
+/// Largest changes of coordinates since the last comparison with the limits: per cycle (`step`), and from one
+/// cycle to the next (`step_change`).
 struct Changes {
-    static constexpr std::size_t PADDED = 10;  ///< of the axes, for instructions that take two at once
+    static constexpr std::size_t PADDED =
+        10;  ///< number of axes, padded for instructions that process two values at once
     alignas(16) std::array<double, PADDED> step{}, step_change{};
     double step_xyz2 = 0, step_change_xyz2 = 0;  ///< squares of the norms of X Y Z
     std::array<double, MAX_JOINTS> joint_step{}, joint_step_change{};
@@ -27,38 +28,38 @@ struct RetraceInputs {
     bool isPathHeld = false;  ///< the path is paused and not at its end
     double rate = 0;          ///< of the commanded speed
 };
-/// Limits of reverse run; where joints are not axes also those of the first `joints`.
+/// Limits of reverse run; if joints are not axes, also those of the first `joints` joints.
 struct RetraceLimits {
     const FoldedLimits &folded;
     int joints = 0;
     double period_s = 1e-3;
 };
-/// Some megabytes, so never on a stack.
+/// Its size is some megabytes, so it is never on a stack.
 class Retracing {
   public:
-    /// Changes the pose of the path to the pose to command: behind it in reverse run. True when the path was
-    /// dropped in reverse run: the next path begins at `pose`.
+    /// Replaces the pose of the path by the pose to command, which is behind it in reverse run. True if the
+    /// path was dropped in reverse run: the next path begins at `pose`.
     bool step(geometry::Pose &pose, const RetraceInputs &in, const RetraceLimits &limits) noexcept;
-    /// Where joints are not axes, in reverse run before step(): the change of joint `j` in the last cycle,
-    /// and the change of that change.
+    /// If joints are not axes: called in reverse run before step() with the change of joint `j` in the last
+    /// cycle, and the change of that change.
     void follow_joint(int j, double step, double step_change) noexcept;
 
     /// Records a commanded pose of the path for reverse run.
     void record(const geometry::Pose &pose, const RetraceLimits &limits) noexcept;
-    /// Where joints are not axes, before record(): the change of joint `j` in the last cycle, and of that
-    /// change.
+    /// If joints are not axes: called before record() with the change of joint `j` in the last cycle, and the
+    /// change of that change.
     void record_joint(int j, double step, double step_change) noexcept;
     /// Forgets the recorded path.
     void clear() noexcept { retrace_.clear(); }
 
     /// Nothing is recorded.
     bool isEmpty() const noexcept { return retrace_.isEmpty(); }
-    /// The recorded path leads back.
+    /// True if a recorded path leads back.
     bool hasPath() const noexcept { return retrace_.hasWay(); }
-    /// The machine is behind the path.
+    /// True if the machine is behind the path.
     bool isAway() const noexcept { return retrace_.isAway(); }
     bool isMoving() const noexcept { return retrace_.isMoving(); }
-    /// The path was dropped in reverse run, which has not stopped yet.
+    /// True if the path was dropped in reverse run, which has not stopped yet.
     bool isPathLeft() const noexcept { return path_left_; }
 
   private:
@@ -68,13 +69,13 @@ class Retracing {
 
     trajectory::Retrace retrace_;
     bool path_left_ = false;
-    bool stopping_ = false;         ///< commanded to stop in the last cycle
+    bool stopping_ = false;         ///< a stop was commanded in the last cycle
     std::uint64_t drops_seen_ = 0;  ///< of the executor
     Changes changes_;
     /// Recorded last.
     alignas(16) std::array<double, Changes::PADDED> last_position_{}, last_step_{};
-    geometry::Pose pose_;  ///< commanded last in reverse run
-    Changes last_;         ///< in the last cycle of reverse run, with their signs
+    geometry::Pose pose_;  ///< last commanded pose in reverse run
+    Changes last_;         ///< signed changes of the last cycle of reverse run
 };
 
 }  // namespace mw::motion

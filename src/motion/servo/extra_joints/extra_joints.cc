@@ -48,7 +48,7 @@ ExtraJointEvents ExtraJoints::step(const ExtraJointInputs &in) noexcept {
         events.lost |= isNumber ? 0U : bit;
         const bool isTakenOver = joint.state == Following::NONE;
         joint.state = next_state(joint, isChanged, in.period_s);
-        if (isTakenOver) {  // the move before may have ended within this cycle
+        if (isTakenOver) {  // the previous move may have ended within this cycle
             joint.planner.reset(in.positions[n]);
             joint.limit_reported = false;
             continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Extra joints: homed like other joints, moved by no pose. Once homed they follow their pin within their
-// limits.
+// Extra joints are homed like other joints, but no pose moves them. After homing they follow their pin within
+// their limits.
 #pragma once
 
 #include <array>
@@ -24,13 +24,13 @@ struct ExtraJointInputs {
     double period_s = 1e-3;
 };
 struct ExtraJointEvents {
-    std::uint32_t lost = 0;    ///< bit per joint whose pin is no longer a number
-    std::uint32_t beyond = 0;  ///< bit per joint whose pin has just left its range
+    std::uint32_t lost = 0;    ///< bit per joint whose pin has ceased to be a number
+    std::uint32_t beyond = 0;  ///< bit per joint whose pin has left its range in this cycle
 };
 /// The last joints of the machine.
 class ExtraJoints {
   public:
-    /// Joints from `first` on, `count` of them.
+    /// Uses `count` joints from `first` on.
     void use_joints(int first, int count) noexcept {
         first_ = first;
         count_ = count;
@@ -40,14 +40,14 @@ class ExtraJoints {
     /// Bit per extra joint.
     std::uint32_t mask() const noexcept { return ((1U << count_) - 1U) << first_; }
 
-    /// A cycle of the homed ones; the others are not changed.
+    /// One cycle of the homed joints; the others are not changed.
     ExtraJointEvents step(const ExtraJointInputs &in) noexcept;
-    /// Switched on: no motion until a pin changes.
+    /// Called when the machine is switched on: joints do not move until a pin changes.
     void switch_on(const ExtraJointInputs &in) noexcept;
-    /// The joints brake. A pin that keeps changing does not move them.
+    /// Brakes the joints. A pin that keeps changing does not move them.
     void hold() noexcept;
 
-    /// Joint `j` is commanded here: it is homed, so neither jogs nor homing move it.
+    /// True if joint `j` is commanded here. It is homed, so neither jogs nor homing move it.
     bool isCommanding(int j) const noexcept { return at(j).state != Following::NONE; }
     /// Commanded position of such a joint.
     double position(int j) const noexcept { return at(j).planner.position(); }
@@ -55,7 +55,7 @@ class ExtraJoints {
     void fill(std::uint32_t homed, Outputs &out) const noexcept;
 
     enum class Following : std::uint8_t {
-        NONE,   ///< not homed: jogs and homing move it
+        NONE,   ///< not homed: moved by jogs and homing
         HELD,   ///< stopped: brakes, then waits until the pin has settled
         READY,  ///< waits until the pin changes
         PIN,    ///< follows the pin

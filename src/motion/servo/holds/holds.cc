@@ -16,7 +16,7 @@ constexpr double SCALE_ROUNDING = 1e-9;
 }  // namespace
 
 void Holds::step(const HoldInputs &in) noexcept {
-    // A value that is not a number is a feed of 0: a broken sensor must not let the machine run.
+    // A value that is not a number counts as 0: a broken sensor must not let the machine run.
     const double wanted = std::isfinite(in.adaptive_feed) ? std::clamp(in.adaptive_feed, -1.0, 1.0) : 0.0;
     const double adaptive = adaptive_feed_enabled_ ? wanted : 1.0;
     reverse_wanted_ = (adaptive < 0) != reversed_;

@@ -13,7 +13,7 @@ namespace mw::motion {
 struct HoldInputs {
     double adaptive_feed = 1;
     bool isFeedHeld = false, isFeedInhibited = false;
-    std::uint32_t steps_done = 0;  ///< the StepOnce whose stop has been reached
+    std::uint32_t steps_done = 0;  ///< count of StepOnce commands whose stop was reached
 };
 
 class Holds {
@@ -30,15 +30,15 @@ class Holds {
 
     /// One cycle.
     void step(const HoldInputs &in) noexcept;
-    /// Motion has been stopped: no path remains to continue.
+    /// Motion was stopped and no path remains to continue.
     void release() noexcept;
 
-    // As of the last cycle.
+    // Values of the last cycle.
     /// Reverse run, by command or by adaptive feed below 0.
     bool isReverseWanted() const noexcept { return reverse_wanted_; }
     /// Pause or feed hold.
     bool isHoldWanted() const noexcept { return hold_wanted_; }
-    /// Speed of reverse run, as a part of the commanded speed.
+    /// Speed of reverse run as a fraction of the commanded speed.
     double reverse_rate() const noexcept { return reverse_rate_; }
     double net_feed_scale() const noexcept { return net_feed_scale_; }
 

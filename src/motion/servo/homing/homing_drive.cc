@@ -11,8 +11,8 @@ namespace {
 
 constexpr int ALL = -1, VOLATILE_ONES = -2;
 
-/// Travel at the latch velocity in which backlash is compensated, with the half of the joint's limits that
-/// corrections have. The slow move may begin at this distance from the switch.
+/// Travel at the latch velocity during which backlash is compensated with half of the joint's limits. The
+/// slow move may begin at this distance from the switch.
 double clearance_of(const Settings &settings, int j) noexcept {
     const auto get = [&](Parameter p) { return settings.get(p, j); };
     const double play = get(Parameter::JOINT_BACKLASH);
@@ -99,7 +99,7 @@ CommandResult HomingDrive::take(const Unhome &command, const HomeConditions &con
         return result_of(j, Reason::MOVING);
     }
     if (conditions.isReady && conditions.mode != Mode::FREE) {
-        return result_of(j, Reason::WRONG_MODE);  // the pose depends on the homes
+        return result_of(j, Reason::WRONG_MODE);  // the pose depends on the home positions
     }
     std::uint32_t meant = 0;
     for (int k = 0; k < num_joints_; ++k) {
@@ -182,8 +182,7 @@ homing::Failure HomingDrive::begin_due(const HomeConditions &conditions) noexcep
     return homing::Failure::NONE;
 }
 
-/// A user's module does not report why homing ends: a joint that was being homed and is not homed now has
-/// failed.
+/// A user's module does not report why homing ends. A joint that was homing and is not homed now has failed.
 int HomingDrive::failed_foreign_joint() noexcept {
     std::uint32_t homing = 0;
     for (int j = 0; j < num_joints_; ++j) {

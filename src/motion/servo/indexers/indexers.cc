@@ -32,7 +32,7 @@ LockStep next(LockState state, const LockSituation &s) noexcept {
         }
         return {s.isWanted || s.isMoving ? LockState::UNLOCKED : LockState::LOCKING};
     case LockState::LOCKING:
-        // Not unlocked again before it has locked: is-unlocked may still have its old value.
+        // It is unlocked again only after it has locked, because is-unlocked may have its old value.
         if (!s.isUnlocked) {
             return {LockState::LOCKED};
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Locking indexers: joints that are locked except during their own moves. Before a jog or G0 of such a joint
-// it is unlocked, and locked after it; homing does this by itself. A joint moves only while it is unlocked.
+// Locking indexers are locked except during their own moves. A jog or G0 of such a joint unlocks it before
+// and locks it after the move; homing does the same. A joint moves only while it is unlocked.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ inline constexpr double LONGEST_LOCK_S = 30;
 
 /// Bits per joint.
 struct IndexerInputs {
-    std::uint32_t wanted = 0;    ///< a move of it is requested
+    std::uint32_t wanted = 0;    ///< a move of this joint is requested
     std::uint32_t moving = 0;    ///< it moves
     std::uint32_t unlocked = 0;  ///< by its pin
     std::uint32_t homing = 0;    ///< it is being homed
@@ -41,16 +41,16 @@ class Indexers {
     void set_joints(std::uint32_t joints) noexcept { joints_ = joints; }
     bool isEmpty() const noexcept { return joints_ == 0; }
 
-    /// One cycle while the machine is on, before anything moves.
+    /// One cycle while the machine is on, before joints move.
     IndexerEvent step(const IndexerInputs &in) noexcept;
-    /// All lock at once: the machine goes off.
+    /// Locks all indexers at once, because the machine is switched off.
     void switch_off() noexcept;
-    /// Switched on. `unlocked`: bit per joint, by the pins.
+    /// Called when the machine is switched on. `unlocked`: bit per joint, from the pins.
     void switch_on(std::uint32_t unlocked) noexcept;
 
     /// Joints that may not be moved now.
     std::uint32_t held() const noexcept;
-    /// Joints that wait for their lock, or move.
+    /// Joints that wait for their lock, or are moving.
     [[gnu::hot]] std::uint32_t busy() const noexcept;
     std::uint32_t in_state(LockState state) const noexcept;
 

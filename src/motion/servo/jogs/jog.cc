@@ -18,7 +18,7 @@ Reason Jog::start(const JogMove &move, const JogSituation &s) noexcept {
     if (!std::isfinite(move.position) || !std::isfinite(move.velocity)) {
         return Reason::NOT_A_NUMBER;
     }
-    // From outside the limits a move may go back in, but not further out.
+    // From outside the limits a move may go back, but not further out.
     const double low = std::min(s.range.low, motion_.position);
     const double high = std::max(s.range.high, motion_.position);
     if (move.position < low - RANGE_ROUNDING || move.position > high + RANGE_ROUNDING) {
@@ -78,7 +78,7 @@ void Jog::reduce_acceleration(double fraction, bool isShared) noexcept {
     const bool isFraction = fraction > 0 && fraction <= 1;
     wanted_.acceleration *= isFraction ? fraction : 1.0;
     if (isShared) {
-        // A stop keeps the limits that the joints leave to it.
+        // A stop uses the limits that the joints permit.
         brake_acceleration_ = wanted_.acceleration;
     } else {
         motion_.max_acceleration = wanted_.acceleration;

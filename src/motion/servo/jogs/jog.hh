@@ -18,7 +18,7 @@ enum class JogSource : std::uint8_t { NONE, KEYBOARD, WHEEL };
 /// Time after which a continuous jog ends if it is not renewed.
 struct JogLease {
     std::int64_t length_ns = 0, end_ns = 0;
-    bool isForward = true;  ///< of the jog that it belongs to
+    bool isForward = true;  ///< direction of the jog that has the lease
 };
 
 /// Conditions and limits of a jog of one joint or axis.
@@ -26,12 +26,12 @@ struct JogSituation {
     bool isReady = false;  ///< machine on and not stopping
     Mode mode = Mode::FREE;
     bool isHoming = false, isInhibited = false;
-    bool isMovable = false;        ///< the joint is active; a joint moves the axis
-    bool isSynchronised = false;   ///< a joint that homes with others is not jogged alone
+    bool isMovable = false;        ///< the joint is active, or a joint moves the axis
+    bool isSynchronised = false;   ///< a joint that homes with others cannot be jogged alone
     bool isDriven = false;         ///< by a pin
-    bool isLocked = false;         ///< a lock is opened for the jog
+    bool isLocked = false;         ///< the jog needs an open lock
     bool isShared = false;         ///< an axis of a machine whose joints are not axes
-    bool isBesideIndexer = false;  ///< something else moves, or one of the two is locked
+    bool isBesideIndexer = false;  ///< something else moves, or one of the two axes is locked
     bool isOnPosLimit = false, isOnNegLimit = false;
     MotionLimits limits;
     JogRange range;
@@ -53,40 +53,41 @@ class alignas(64) Jog {
     /// Requested limits, before the override and the joints reduce them.
     const MotionLimits &wanted() const noexcept { return wanted_; }
 
-    /// Begins a jog; rejects a target outside the range.
+    /// Starts a jog; rejects a target outside the range.
     Reason start(const JogMove &move, const JogSituation &situation) noexcept;
-    /// Another speed for a jog that keeps its target, so a jog that is stopped at a limit stays there.
+    /// Changes the speed of a jog but not its target, so a jog that is stopped at a limit stays there.
     void renew(double velocity, const JogSituation &situation) noexcept;
     void begin_lease(double lease_s, bool isForward, std::int64_t time_ns) noexcept;
     const JogLease &lease() const noexcept { return lease_; }
-    /// True while the jog has a source; a jog that has stopped loses it.
+    /// True while the jog has a source. A jog that has stopped loses its source.
     bool update_source() noexcept;
     void forget_source() noexcept { source_ = JogSource::NONE; }
 
-    /// Counts of the wheel since the last cycle that are to move something; 0 for none.
+    /// Counts of the wheel since the last cycle; 0 if nothing moves.
     double turned(const WheelInput &wheel) noexcept;
     void set_wheel_counts(std::int32_t counts) noexcept { wheel_counts_ = counts; }
-    /// A jog by a wheel accelerates with a part of the limit.
+    /// A wheel jog uses a fraction of the acceleration limit.
     void reduce_acceleration(double fraction, bool isShared) noexcept;
 
-    /// Stops with the full acceleration.
+    /// Stops with full acceleration.
     void brake() noexcept;
     /// Stops with the current limits.
     void stop() noexcept { motion_.stop(); }
     /// Stops in this cycle, without the limits of the drives.
     void stop_at_once() noexcept { motion_.reset(motion_.position); }
-    /// After a change of the limits: ends at the end of the range; brakes if it moves away from the range.
+    /// Called after a change of the limits. Ends the jog at the end of the range; brakes it if it moves away
+    /// from the range.
     void keep_within(const JogRange &range) noexcept;
     /// Stopped, at another position.
     void reset(double position) noexcept { motion_.reset(position); }
-    /// Changes the position without motion; the rest of the move becomes longer by `shift`.
+    /// Changes the position without motion; the remaining distance grows by `shift`.
     void renumber(double position, double shift) noexcept { motion_.renumber(position, shift); }
-    /// Command of homing in this cycle.
+    /// Executes the homing command of this cycle.
     void home(const homing::JointCommand &command, const MotionLimits &limits) noexcept;
 
-    /// The override applies to an axis that moves; on machines whose joints are axes.
+    /// Applies the override to an axis that moves; used if joints are axes.
     void limit(double max_velocity, double scale) noexcept;
-    /// Current limits, where the joints reduce them.
+    /// Sets limits that the joints reduce.
     void set_limits(const MotionLimits &limits) noexcept;
     void step(double period_s) noexcept { motion_.step(period_s); }
     /// Continues the move of a joint for one period.
@@ -97,7 +98,7 @@ class alignas(64) Jog {
     std::int32_t wheel_counts_ = 0;
     MotionLimits wanted_;
     double max_velocity_ = UNBOUNDED;  ///< limit of the override
-    double brake_acceleration_ = 0;    ///< of a stop: a wheel cannot reduce it
+    double brake_acceleration_ = 0;    ///< for a stop, also if a wheel uses a fraction
     JogLease lease_;
     trajectory::AxisMotion motion_;
 };

@@ -16,22 +16,22 @@
 
 namespace mw::motion {
 
-/// Inputs for the jogs of axes.
+/// Inputs of jogs of axes.
 struct TeleopMachine {
     const kinematics::Kinematics &kinematics;
     const FoldedLimits &limits;
-    const trajectory::JointLimits &joints;             ///< without the share of external offsets
+    const trajectory::JointLimits &joints;             ///< excluding the share of external offsets
     std::array<double, MAX_JOINTS> joint_positions{};  ///< without external offsets
     int num_joints = 0;
     double scale = 1;  ///< override
     double period_s = 1e-3;
     int side = 0;              ///< of the current pose (kinematics::Kinematics)
-    std::uint32_t locked = 0;  ///< bit per axis whose lock is closed: it does not move
+    std::uint32_t locked = 0;  ///< bit per axis that does not move because its lock is closed
 };
 
 struct TeleopStop {
-    bool isNew = false;  ///< jogs were stopped in this cycle for the first time
-    int joint = -1;      ///< joint that would leave its soft limits; -1: the kinematics has no solution
+    bool isNew = false;  ///< jogs stopped for the first time in this cycle
+    int joint = -1;      ///< joint that would exceed its soft limits; -1: the kinematics has no solution
 };
 class Jogs {
   public:
@@ -53,26 +53,26 @@ class Jogs {
     /// Hard limits are ignored until the next jog has ended.
     bool areLimitsOverridden() const noexcept { return limits_overridden_; }
 
-    /// Whether a jog may start at all; `direction` > 0, < 0, or 0 when not yet known.
+    /// Checks whether a jog may start. `direction` > 0, < 0, or 0 if unknown.
     Reason check(const JogTarget &target, double direction, const JogSituation &situation) const noexcept;
     CommandResult take(const JogContinuous &command, const JogSituation &situation) noexcept;
     CommandResult take(const JogIncremental &command, const JogSituation &situation) noexcept;
     CommandResult take(const JogAbsolute &command, const JogSituation &situation) noexcept;
     CommandResult take(const JogStop &command) noexcept;
     CommandResult take(const OverrideLimits &command) noexcept;
-    /// Jogs every axis at its own speed, and stops those at 0. If one is rejected, none moves. `situations`
-    /// has one for each axis.
+    /// Jogs every axis at its own speed; axes with speed 0 stop. If one is rejected, none moves. `situations`
+    /// has one element per axis.
     CommandResult take(const SetTeleopVector &command, const JogSituation *situations) noexcept;
-    /// A wheel that requests an impossible move is ignored: it is no command.
+    /// A wheel is not a command: a request for an impossible move is ignored.
     void jog_by_wheel(const JogTarget &target, double distance, const WheelInput &wheel,
                       const JogSituation &situation) noexcept;
 
-    /// Ends one lease that was not renewed in time, and its jog brakes. Returns the joint or axis to report,
-    /// index -1 when there is none left. Called in each cycle, before the jogs move, until it returns -1.
+    /// Ends one lease that was not renewed in time, and brakes its jog. Returns the joint or axis to report,
+    /// or index -1 when none is left. Call it in each cycle before jogs move, until it returns -1.
     [[gnu::hot]] JogTarget end_lease(std::int64_t time_ns) noexcept;
-    /// After wheels and commands of a cycle: keeps the counts, and ends jogs that have stopped.
+    /// Called after wheels and commands of a cycle: records counts and ends jogs that have stopped.
     void settle(const Inputs &in) noexcept;
-    /// Where joints are not axes: moves the axes for one cycle. Stops all jogs before a joint leaves its soft
+    /// If joints are not axes: moves the axes for one cycle. Stops all jogs before a joint exceeds its soft
     /// limits.
     TeleopStop step_teleop(const TeleopMachine &machine) noexcept;
 
@@ -82,11 +82,12 @@ class Jogs {
     void stop_at_once() noexcept;
     /// Removes the sources of all jogs.
     void forget_sources() noexcept;
-    /// Sets the axes, stopped, to the position of the machine.
+    /// Sets the axes to the position of the stopped machine.
     void reset_axes(const geometry::Pose &pose) noexcept;
-    /// Sets joints and axes, stopped, and removes the sources. `joint_positions` has MAX_JOINTS elements.
+    /// Sets joints and axes of the stopped machine, and removes the sources. `joint_positions` has MAX_JOINTS
+    /// elements.
     void rest_at(const double *joint_positions, const geometry::Pose &pose) noexcept;
-    /// The same when the machine is switched on: counts of wheels start here.
+    /// As rest_at() when the machine is switched on; wheel counts start from here.
     void start_at(const double *joint_positions, const geometry::Pose &pose, const Inputs &in) noexcept;
     bool areJointsAtRest() const noexcept;
     bool areAxesAtRest() const noexcept;
@@ -106,11 +107,11 @@ class Jogs {
 
     int num_joints_ = 0;
     bool limits_overridden_ = false;
-    bool override_used_ = false;   ///< the jog after which the override ends has begun
-    bool any_jogged_ = false;      ///< by command or wheel, as of this cycle
-    bool teleop_stopped_ = false;  ///< by a joint's limit, and reported
+    bool override_used_ = false;   ///< the jog that ends the override has started
+    bool any_jogged_ = false;      ///< by command or wheel, in this cycle
+    bool teleop_stopped_ = false;  ///< stopped by a joint limit, and reported
     std::uint32_t axes_ = ALL_AXES;
-    std::uint32_t leased_ = 0;  ///< bit per joint, then per axis, whose lease has not ended
+    std::uint32_t leased_ = 0;  ///< bit per joint, then per axis, with a lease that has not ended
     std::array<Jog, MAX_JOINTS> joint_{};
     std::array<Jog, MAX_AXES> axis_{};
 };

@@ -9,19 +9,19 @@ namespace mw::motion {
 
 namespace {
 
-/// Distances for derivatives, and for third derivatives [machine units, degrees].
+/// Step sizes for derivatives, and for third derivatives [machine units, degrees].
 constexpr double STEP = 1e-3, JERK_STEP = 0.1;
-/// Between the positions derivatives may be larger by this factor; where a joint follows the axes along
-/// straight lines, by rounding. What is allowed keeps a larger one than what is checked, since the next cycle
-/// sees other positions.
+/// Between the samples a derivative may be larger by this factor. For a joint that is linear in the axes the
+/// factor covers rounding only. The margin for allowed values is larger than that of the check, because the
+/// next cycle samples other positions.
 struct Margin {
     double curved, straight;
 };
 constexpr Margin ALLOWED{1.08, 1.0 + 2e-6}, CHECKED{1.05, 1.0 + 1e-6};
 /// A second derivative below this is rounding.
 constexpr double LEAST_CURVE = 1e-6;
-/// Parts of the acceleration and the jerk of a joint that curves may use at the maximum speed. The jerk has
-/// one part for the speed with the acceleration, and one for the speed alone.
+/// Fractions of the acceleration and jerk of a joint that curvature may use at maximum speed. The jerk has
+/// one fraction for speed combined with acceleration, and one for speed alone.
 constexpr double CURVE_SHARE = 0.5, SWING_SHARE = 0.25, TURN_SHARE = 0.25;
 constexpr double NONE = std::numeric_limits<double>::infinity();
 
@@ -29,7 +29,7 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// The terms of one joint's velocity, acceleration and jerk.
+/// The terms of a joint's velocity, acceleration and jerk.
 class JointTerms {
   public:
     JointTerms(const JointLoad &load, std::uint32_t members, int joint, const Margin &margin) noexcept
@@ -89,7 +89,7 @@ double jerk_of(const TeleopMachine &m, const JointLoad &load, int j) noexcept {
     return load.hasJerk && most < trajectory::UNLIMITED ? most : NONE;
 }
 
-/// Reduces the values of the axes that move the joint, by the factor that brings `used` to `most`.
+/// Reduces the values of the axes that move the joint, by the factor that reduces `used` to `most`.
 template <class Uses>
 void reduce(AxisValues &values, int count, double factor, Uses uses) noexcept {
     for (int i = 0; i < count && factor < 1.0; ++i) {
@@ -101,7 +101,7 @@ double factor_to(double most, double used) noexcept {
     return used > most ? most / used : 1.0;
 }
 
-/// At most what each axis could have alone: what is wanted may have no limit.
+/// Limits the values to what each axis could have alone, because the requested values may have no limit.
 void limit_alone(const TeleopMachine &m, const JointLoad &load, std::uint32_t members,
                  AxisDemand &out) noexcept {
     for (int j = 0; j < m.num_joints; ++j) {
@@ -120,7 +120,7 @@ void limit_alone(const TeleopMachine &m, const JointLoad &load, std::uint32_t me
     }
 }
 
-/// Speeds that leave room on curves.
+/// Speeds that leave part of the limits for curvature.
 void limit_speeds(const TeleopMachine &m, const JointLoad &load, std::uint32_t members,
                   AxisDemand &out) noexcept {
     for (int j = 0; j < m.num_joints; ++j) {
@@ -213,7 +213,7 @@ class Differences {
     }
     static void keep(double &most, double value) noexcept { most = std::max(most, std::abs(value)); }
 
-    /// Third differences from two steps to each side.
+    /// Third differences with two steps to each side.
     void add_third(const JointsAt &far_after, const JointsAt &far_before, const JointsAt &after,
                    const JointsAt &before, JointsAt &most) const noexcept {
         for (std::size_t j = 0; j < at(m_.num_joints); ++j) {
@@ -228,7 +228,7 @@ class Differences {
         }
         const JointsAt &after = after_[at(i)];
         for (std::size_t j = 0; j < at(m_.num_joints); ++j) {
-            // The larger of the two sides: the slope at the ends of the step counts as well.
+            // The larger of both sides, because the slope at the ends of the step is also used.
             keep(load_.q1[at(i)][j],
                  std::max(std::abs(after[j] - here_[j]), std::abs(here_[j] - before[j])) / step_);
             keep(load_.q2[at(i)][at(i)][j], (after[j] - 2.0 * here_[j] + before[j]) / (step_ * step_));

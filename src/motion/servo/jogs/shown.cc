@@ -13,7 +13,7 @@ std::size_t index(int i) noexcept {
 
 }  // namespace
 
-/// Values that change while axes follow a path: the speeds of their jogs do not.
+/// Fills only values that change while axes follow a path. Jog speeds do not change then.
 void Jogs::fill_positions(const geometry::Pose &pose, Outputs &out) const noexcept {
     for (int j = 0; j < num_joints_; ++j) {
         const Jog &from = joint_[index(j)];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Jogs of axes on machines whose joints are not axes. After every cycle the axes have a stop in which no
-// joint exceeds a limit. If a cycle would end without one, the axes brake along their present stop instead.
+// Jogs of axes on machines whose joints are not axes. After every cycle, the axes can stop without a joint
+// exceeding a limit. If a cycle would end without such a stop, the axes brake along their current stop
+// instead.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +11,7 @@ namespace mw::motion {
 
 namespace {
 
-/// Distance past the stop of the jogs at which the joints are examined as well [machine units, degrees].
+/// Distance past the stop of the jogs within which joints are examined [machine units, degrees].
 constexpr double LEAST_WINDOW = 0.5;
 /// Rounding of a position at a joint's soft limit, and at the target of an axis.
 constexpr double POSITION_ROUNDING = 1e-9;
@@ -23,7 +24,7 @@ std::uint32_t bit(int axis) noexcept {
     return 1U << axis;
 }
 
-/// Maximum speed of a stop from here: the acceleration must fall to 0 first.
+/// Maximum speed during a stop from here; the acceleration must first fall to 0.
 double fastest_of(const trajectory::AxisMotion &p) noexcept {
     const trajectory::MotionState state{0, p.velocity, p.acceleration};
     const double settled = p.max_jerk > 0 ? trajectory::settled_speed(state, p.max_jerk) : 0.0;
@@ -64,7 +65,7 @@ class TeleopCycle {
         }
     }
 
-    /// `wasStopped`: jogs were stopped before, and reported.
+    /// `wasStopped`: jogs were already stopped, and reported.
     TeleopStop run(bool wasStopped) noexcept {
         if (requested_ == 0) {
             return {};
@@ -86,8 +87,9 @@ class TeleopCycle {
     Jog &jog(int i) noexcept { return jogs_[at(load_.axes[at(i)])]; }
     const Jog &jog(int i) const noexcept { return jogs_[at(load_.axes[at(i)])]; }
 
-    /// Tries all requested axes with their share of the joint limits. If that leaves no stop, the moving axes
-    /// alone: with the same share, with what the joints allow them alone, then with their current limits.
+    /// Tries all requested axes with their share of the joint limits. If no stop is possible, tries the
+    /// moving axes alone: with the same share, with the limits that the joints allow them alone, then with
+    /// their current limits.
     Attempt begin() noexcept {
         if (!examine()) {
             return {Attempt::Kind::JOINT_LIMIT, -1};
@@ -123,7 +125,7 @@ class TeleopCycle {
         }
         return out;
     }
-    /// The acceleration and jerk of the last cycle.
+    /// Acceleration and jerk of the last cycle.
     AxisDemand with_current_limits(const AxisDemand &speeds) const noexcept {
         AxisDemand out = speeds;
         for (int i = 0; i < load_.count; ++i) {
@@ -134,7 +136,7 @@ class TeleopCycle {
     }
 
     /// Calculates the load up to the stop of the axes, and past it. False if the kinematics has no solution
-    /// up to the stop.
+    /// before the stop.
     bool examine() noexcept {
         double square = 0;
         for (int i = 0; i < load_.count; ++i) {
@@ -162,7 +164,7 @@ class TeleopCycle {
             far_[at(i)] = {std::min(near.low, far[axis]), std::max(near.high, far[axis])};
         }
         const bool isFound = add_pose(m_, here_, load_) && (moving_ == 0 || add_stop(moving_, load_));
-        // Past the stop only what can be reached counts: a jog may end at the edge of the workspace.
+        // Past the stop, only reachable positions count, because a jog may end at the edge of the workspace.
         ahead_ = load_;
         JointLoad more = load_;
         if (isFound && add_pose(m_, here_ + (far - here_) * 0.5, more)) {
@@ -190,7 +192,7 @@ class TeleopCycle {
         return isFound;
     }
 
-    /// Begins the cycle with these limits if the axes of `members` have a stop after it.
+    /// Starts the cycle with these limits if the axes of `members` have a stop after it.
     Attempt attempt_with(const AxisDemand &limits, std::uint32_t members) noexcept {
         const AxisJogs before = jogs_;
         AxisDemand now = limits;
@@ -209,11 +211,11 @@ class TeleopCycle {
             const trajectory::MotionState begin{0, p.velocity, p.acceleration};
             jog(i).step(m_.period_s);
             now.velocity[at(i)] = std::max(std::abs(begin.v), fastest_of(p));
-            // Where the acceleration changes sign, the speed has its maximum within the cycle.
+            // If the acceleration changes sign, the maximum speed is within the cycle.
             const bool isPeak = begin.a * p.acceleration < 0;
             now.velocity[at(i)] += isPeak ? p.max_jerk * m_.period_s * m_.period_s / 8 : 0.0;
             now.acceleration[at(i)] = std::max(now.acceleration[at(i)], std::abs(p.acceleration));
-            // Its reach may not grow: it does not pass its target.
+            // The axis must not pass its target.
             double next_low = p.position;
             double next_high = p.position;
             p.add_reach(next_low, next_high);
@@ -237,7 +239,7 @@ class TeleopCycle {
         return out;
     }
 
-    /// Other limits change the line along which several axes stop: the joints are examined there, too.
+    /// Other limits change the line along which several axes stop, so the joints are examined there, too.
     bool isStopWithinJoints(const JointLoad &known, std::uint32_t members, const AxisDemand &now) noexcept {
         if (load_.count < 2) {
             return true;
@@ -246,7 +248,7 @@ class TeleopCycle {
         return add_stop(members, along) && isWithinJoints(m_, along, members, now);
     }
 
-    /// The joints stay within their soft limits along the stop of the axes.
+    /// Checks that the joints stay within their soft limits along the stop of the axes.
     Attempt examine_stop(std::uint32_t members) const noexcept {
         constexpr int SAMPLES = 16;
         const Stop stop = stop_of(members);
@@ -262,7 +264,7 @@ class TeleopCycle {
                 return {Attempt::Kind::JOINT_LIMIT, -1};
             }
             for (int j = 0; j < m_.num_joints; ++j) {
-                // Where a joint reverses, it goes at most a dt^2 / 8 farther than the samples show.
+                // If a joint reverses, it exceeds the samples by at most a dt^2 / 8.
                 const bool isReversal = (here[at(j)] - before[at(j)]) * (next[at(j)] - here[at(j)]) < 0;
                 const double more = isReversal ? m_.joints.acceleration[at(j)] * step_s * step_s / 8 : 0.0;
                 if (isOutside(j, here[at(j)], more)) {
@@ -314,7 +316,7 @@ class TeleopCycle {
             jog(i).stop();
         }
     }
-    /// The axes that move brake with the current limits: that stop has been accepted.
+    /// Brakes the moving axes with the current limits; that stop has been accepted before.
     void brake() noexcept {
         for (int i = 0; i < load_.count; ++i) {
             const trajectory::AxisMotion &m = jog(i).motion();
@@ -334,7 +336,7 @@ class TeleopCycle {
     JointLoad ahead_;  ///< and past it
     bool isFarKnown_ = false;
     std::array<PositionRange, MAX_AXES> near_{},
-        far_{};  ///< positions of the axes for which these loads hold
+        far_{};  ///< positions of the axes for which these loads are valid
 };
 
 }  // namespace

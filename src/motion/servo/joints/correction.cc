@@ -10,23 +10,23 @@ namespace mw::motion {
 
 namespace {
 
-/// Part of the joint's speed, acceleration and jerk that corrections may use in addition to its motion.
+/// Fraction of the joint's speed, acceleration and jerk that corrections may use in addition.
 constexpr double SHARE = 0.5;
 static_assert(STEEPEST_SCREW < SHARE);
-/// A change of the mode may move a joint by this much (`sides`); it is not a commanded move.
+/// A mode change may move a joint by this much (`sides`), which is not a commanded move.
 constexpr double MODE_ROUNDING = 2e-6;
 
 std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Position of the slide within the backlash when the motor moves to `motor`.
+/// Position of the slide within the backlash after the motor moves to `motor`.
 double pushed_slide(const Correction &c, double motor, double backlash) noexcept {
     return std::clamp(c.slide, motor - 0.5 * backlash, motor + 0.5 * backlash);
 }
 
-/// The motor pushes the slide to its position, in the direction of travel. Where the joint reverses before
-/// the backlash is compensated, the slide has stayed behind.
+/// The motor pushes the slide in the direction of travel. If the joint reverses before the backlash is
+/// compensated, the slide has stayed behind.
 void choose_side(Correction &c, double position, double backlash) noexcept {
     const double missing = position - pushed_slide(c, position + c.position, backlash);
     if (std::abs(missing) > TURN_ROUNDING * (1.0 + std::abs(position))) {
@@ -34,7 +34,7 @@ void choose_side(Correction &c, double position, double backlash) noexcept {
     }
 }
 
-/// The part of the joint's limits that corrections may use.
+/// The fraction of the joint's limits for corrections.
 trajectory::FollowLimits limits_of(const Settings &settings, int joint) noexcept {
     double jerk = settings.get(Parameter::JOINT_MAX_JERK, joint);
     if (!settings.isSet(Parameter::JOINT_IS_ANGULAR, joint)) {
@@ -149,7 +149,7 @@ double renumber(Correction &c, double position) noexcept {
 void follow(Correction &c, double position) noexcept {
     renumber(c, position);
     c.isHeld = true;
-    if (!c.isAtRest()) {  // it stops here, and continues with the joint's next move
+    if (!c.isAtRest()) {  // the correction stops here and continues with the joint's next move
         c.follower.reset(c.position);
         c.velocity = 0;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Corrections between a joint's position and its motor: backlash, or a table of the errors of its screw,
-// applied within the limits of the joint.
+// Corrections of the motor position: backlash, or a screw compensation table, applied within the joint
+// limits.
 #pragma once
 
 #include <array>
@@ -13,28 +13,30 @@
 
 namespace mw::motion {
 
-/// Correction of the motor position for travel up and down. Linear between points, constant outside the ends.
-/// 240 kB.
+/// Correction of the motor position for positive and negative travel. Linear between points, constant outside
+/// the ends. 240 kB.
 struct ScrewTable {
     int count = 0;   ///< points of the active table, 0: no table
-    int filled = 0;  ///< of points of an incomplete table
+    int filled = 0;  ///< points so far of an incomplete table
     double steepest = 0;
     double widest = 0;  ///< largest difference between forward and reverse
     RawArray<double, MAX_SCREW_POINTS> nominal, forward, reverse;  ///< the first `filled` of each
 };
 
-/// Adds a point, or ends the table. An incomplete table has no effect.
+/// Adds a point, or completes the table. An incomplete table has no effect.
 Reason take(ScrewTable &table, const LoadCompensation &point) noexcept;
 
-/// At `position` for forward (`side` > 0) or reverse travel (< 0); 0 without a direction (0).
+/// Correction at `position` for forward (`side` > 0) or reverse travel (< 0); 0 without a direction (0).
 double look_up(const ScrewTable &table, int side, double position) noexcept;
 
-/// Members that each cycle reads of a joint without corrections lie together, before the points of the table.
+/// Members that each cycle reads for a joint without corrections are adjacent, before the points of the
+/// table.
 struct Correction {
-    double slide = 0;           ///< position of the slide within the backlash, from the motor
-    int side = 0;               ///< +1 or -1 once the joint has moved
-    bool isHeld = false;        ///< switched on again: the missing correction waits until the joint moves
-    bool isSlideKnown = false;  ///< backlash was compensated since the motor was last moved by others
+    double slide = 0;  ///< position of the slide within the backlash, from the motor
+    int side = 0;      ///< +1 or -1 once the joint has moved
+    bool isHeld =
+        false;  ///< the machine was switched on again: the missing correction waits until the joint moves
+    bool isSlideKnown = false;  ///< backlash was compensated since the motor was last moved externally
     double position = 0, velocity = 0;   ///< current correction
     double raw = 0;                      ///< correction to reach
     double extreme = 0;                  ///< extreme position since the last reversal of the joint
@@ -44,11 +46,11 @@ struct Correction {
     bool isAtRest() const noexcept { return follower.isAtRest(); }
 };
 
-/// No backlash, no table and no correction left: the joint only records its direction.
+/// No backlash, no table and no correction left: only the direction is recorded.
 inline bool isIdle(const Correction &c, double backlash) noexcept {
     return backlash == 0.0 && c.table.count == 0 && !c.isHeld && c.position == 0.0 && c.isAtRest();
 }
-/// The side changes when the joint reverses, not by the rounding of a stop.
+/// The side changes only when the joint reverses, not by rounding at a stop.
 inline constexpr double TURN_ROUNDING = 1e-9;
 inline void follow_side(Correction &c, double position) noexcept {
     const double moved = position - c.extreme;
@@ -59,7 +61,7 @@ inline void follow_side(Correction &c, double position) noexcept {
     }
     c.extreme = isMove || isOnward ? position : c.extreme;
 }
-/// One cycle of a joint for which isIdle is true.
+/// One cycle of a joint for which isIdle() is true.
 inline void follow_idle(Correction &c, double position) noexcept {
     follow_side(c, position);
     c.raw = 0;
@@ -67,10 +69,10 @@ inline void follow_idle(Correction &c, double position) noexcept {
 /// One cycle of a joint at `position`.
 void step(Correction &correction, const Settings &settings, int joint, double position,
           double period_s) noexcept;
-/// While the machine is off: the correction of the table where the motor is moved by others.
+/// While the machine is off: the table correction at a position where something else moves the motor.
 void follow(Correction &correction, double position) noexcept;
-/// Changes the joint's position to `position` without motion of the motor. The correction grows by the
-/// returned value.
+/// Changes the joint's position to `position` without motor motion. The correction grows by the returned
+/// value.
 double renumber(Correction &correction, double position) noexcept;
 /// Removes the correction and returns it.
 double clear(Correction &correction) noexcept;

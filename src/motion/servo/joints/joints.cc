@@ -8,14 +8,14 @@ namespace mw::motion {
 
 namespace {
 
-/// Rounding of position differences between samples.
+/// Rounding of differences between sampled positions.
 constexpr double STEP_ROUNDING = 1e-6;
 
 std::size_t index(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Off: the command follows the feedback, so that switching on causes no motion.
+/// While off, the command follows the feedback, so that switching on causes no motion.
 void follow_feedback(Joint &s) noexcept {
     s.pos_cmd = s.pos_fb;
     s.coarse_pos = s.pos_fb;
@@ -26,7 +26,7 @@ void follow_feedback(Joint &s) noexcept {
     s.motor_pos_cmd = s.motor_pos_fb;
 }
 
-/// Inactive while its amplifier is on: the motor keeps its last command.
+/// Inactive with the amplifier on: the motor keeps its last command.
 void hold(Joint &s) noexcept {
     s.vel_cmd = 0;
     s.acc_cmd = 0;
@@ -45,7 +45,7 @@ JointFault check(Joint &s, const Settings &settings, int j, const JointCheck &ho
     const double allowed = std::max(scaled, settings.get(Parameter::JOINT_MIN_FERROR, j));
     s.ferror_limit = allowed;
     if (isAtIndex) [[unlikely]] {
-        // Its encoder counts from another zero already: the lag is that of the cycle before.
+        // Its encoder has another zero already, so the following error is that of the previous cycle.
         return s.isFaulted ? JointFault::AMP_FAULT : JointFault::NONE;
     }
     const double ferror = isFeedbackIgnored ? 0.0 : s.pos_cmd - s.pos_fb;
@@ -105,7 +105,7 @@ CommandResult Joints::take(const SetJointActive &command, const ActivationCondit
     if (isJoining && !conditions.areJointsAlone) {
         return result_of(command.joint, Reason::WRONG_MODE);
     }
-    joint.isActive = command.isActive;  // its amplifier stays as it is
+    joint.isActive = command.isActive;  // its amplifier is not changed
     return result_of(command.joint, Reason::NONE);
 }
 
@@ -203,7 +203,7 @@ void Joints::set_zero(int j, double zero) noexcept {
     renumber(correction, zero);
     joint.motor_offset = -zero - (correction.table.count > 0 ? correction.position : 0.0);
     joint.pos_fb = joint.motor_pos_fb - correction.position - joint.motor_offset;
-    // The lag behind the command is kept, so that the motor sees no step.
+    // The following error is kept, so that the motor sees no step.
     joint.pos_cmd = joint.pos_fb + joint.ferror;
     correction.extreme = joint.pos_cmd;
 }

@@ -19,7 +19,7 @@ struct Joint {
     bool isActive = true;
     bool isAmpWanted = false;  ///< amplifier enable while the machine is on
     bool isFaulted = false, isFerrorTripped = false;
-    bool isFeedbackLost = false;  ///< the pin has no number; the feedback is the last valid one
+    bool isFeedbackLost = false;  ///< the pin has no number; the feedback is the last valid value
     bool isOnPosHardLimit = false, isOnNegHardLimit = false;
     double pos_cmd = 0, pos_fb = 0, vel_cmd = 0, acc_cmd = 0;
     double coarse_pos = 0;
@@ -28,7 +28,7 @@ struct Joint {
     Correction correction;
 };
 
-/// A value of each joint; 0 for joints that the machine does not have.
+/// One value per joint; 0 for joints that the machine does not have.
 using PerJoint = std::array<double, MAX_JOINTS>;
 
 struct ActivationConditions {
@@ -37,7 +37,7 @@ struct ActivationConditions {
 };
 enum class JointFault : std::uint8_t { NONE, FEEDBACK_LOST, AMP_FAULT, FOLLOWING_ERROR, HARD_LIMIT };
 struct JointCheck {
-    /// Bit per joint whose encoder is reset now: command and feedback have different zeros.
+    /// Bit per joint whose encoder is reset in this cycle: command and feedback have different zeros.
     std::uint32_t at_index = 0;
     std::uint32_t limits_ignored = 0;    ///< bit per joint
     std::uint32_t feedback_ignored = 0;  ///< the same
@@ -58,14 +58,14 @@ inline void follow(Joint &joint, double position, double period_s) noexcept {
 struct Overrun {
     int joint = -1;
     bool isOutside = false;
-    double use = 0;  ///< speed or acceleration over the limit
+    double use = 0;  ///< use of the speed or acceleration limit, 1 for all of it
 };
 
 struct JointSituation {
     bool isEnabled = false, areLimitsOverridden = false;
     bool isHomed = false;
 };
-/// The same of all joints.
+/// Situation of all joints.
 struct JointsSituation {
     bool isEnabled = false, areLimitsOverridden = false;
     std::uint32_t homed = 0;  ///< bit per joint
@@ -74,7 +74,7 @@ struct JointsSituation {
 void fill(const Joint &joint, const JointSituation &situation, JointStatus &status,
           JointOutputs &outputs) noexcept;
 
-/// The joints of the machine: those in use are the first ones of those that are loaded.
+/// The joints of the machine: the joints in use are the first of the loaded ones.
 class Joints {
   public:
     explicit Joints(int loaded) noexcept : loaded_(loaded) {}
@@ -91,14 +91,14 @@ class Joints {
     std::uint32_t inactive() const noexcept;
 
     CommandResult take(const SetAmplifier &command, bool isEnabled) noexcept;
-    /// While the machine is off: nothing moves by what is loaded.
+    /// Only while the machine is off, because the correction could move a joint.
     CommandResult take(const LoadCompensation &command, bool isEnabled) noexcept;
     CommandResult take(const SetJointActive &command, const ActivationConditions &conditions) noexcept;
-    /// The joint drives nothing until it is activated.
+    /// Deactivates the joint until it is activated.
     void deactivate(int j) noexcept { at(j).isActive = false; }
-    /// Reason why the machine may not be switched on now, NONE when it may.
+    /// Reason why the machine may not be switched on, NONE if it may.
     CommandResult check_start(const Inputs &in, bool areLimitsOverridden) const noexcept;
-    /// Switched on: the command is taken from the feedback.
+    /// Switches on: the feedback becomes the command.
     void switch_on() noexcept;
     void switch_off() noexcept;
 
@@ -113,9 +113,9 @@ class Joints {
     void follow(int j, double position, double period_s) noexcept {
         motion::follow(at(j), position, period_s);
     }
-    /// Homing has found the zero: positions change by `shift`, the motor stays.
+    /// Homing has found the zero: positions change by `shift`; the motor does not move.
     void shift(int j, double shift) noexcept;
-    /// The encoder has just been reset: motor position 0 is joint position `zero`.
+    /// The encoder was just reset: motor position 0 is joint position `zero`.
     void set_zero(int j, double zero) noexcept;
     /// Motor positions: with corrections and offset while on, the feedback while off. Returns a bit per joint
     /// that is off.

@@ -13,14 +13,14 @@ std::size_t at(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Range that it can reach until it stops.
+/// Range within which it can stop.
 JogRange reach_of(const ExternalOffset &offset) noexcept {
     JogRange out{offset.next, offset.next};
     offset.planner.add_reach(out.low, out.high);
     return out;
 }
 
-/// Turns counts since the last cycle into a distance; a value that is no number has no effect.
+/// Converts counts since the last cycle to a distance. A value that is not a number has no effect.
 void take_counts(ExternalOffset &offset, const OffsetInput &pins, bool isHonoured) noexcept {
     // Unsigned difference: counters overflow.
     const auto turned = static_cast<std::int32_t>(static_cast<std::uint32_t>(pins.counts) -
@@ -35,7 +35,7 @@ void take_counts(ExternalOffset &offset, const OffsetInput &pins, bool isHonoure
     }
 }
 
-/// `to`, limited by the soft limits; an offset outside them does not move further out.
+/// `to` limited by the soft limits. An offset outside them moves no further out.
 double allowed(const ExternalOffset &offset, double to, const JogRange &available) noexcept {
     const double rest = offset.planner.rest();
     return std::clamp(to, std::min(available.low, rest), std::max(available.high, rest));
@@ -47,7 +47,7 @@ JogRange both(const JogRange &a, const JogRange &b) noexcept {
 
 }  // namespace
 
-/// Range for this axis within the soft limits of shared joints, besides the program and the other offsets.
+/// Range for this axis within the soft limits of shared joints, next to the program and other offsets.
 JogRange ExternalOffsets::range_in_joints(const OffsetInputs &in, PoseRange others, int axis) const noexcept {
     JogRange available{-UNBOUNDED, UNBOUNDED};
     others.low[axis] = others.high[axis] = 0;
@@ -117,7 +117,7 @@ void ExternalOffsets::configure(const FoldedLimits &limits, const AxisMap &map) 
     const std::uint32_t had = axes_;
     axes_ = 0;
     for (int i = 0; i < MAX_AXES; ++i) {
-        // An existing offset stays, also if no offset is possible any more.
+        // An existing offset remains, also if the axis may no longer have one.
         const bool isThere = pose_[i] != 0.0 || !axis_[at(i)].planner.isAtRest();
         axes_ |= limits.offset[at(i)].velocity > 0 || isThere ? 1U << i : 0U;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Offsets of axes by HAL pins (axis.L.eoffset-*), added to jogs and paths. Each has its own share of the
-// axis's velocity, acceleration and jerk, and of those of joints that are no axes, so that the sum keeps the
-// limits. It grows only while the jog or program stays within the soft limits with it.
+// Offsets of axes by HAL pins (axis.L.eoffset-*), added to jogs and paths. Each offset may use a fraction of
+// the axis's velocity, acceleration and jerk, and of those of joints that are not axes, so that the sum is
+// within the limits. It grows only while the jog or program stays within the soft limits with it.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace mw::motion {
 struct ExternalOffset {
     trajectory::AxisMotion planner;
     double request = 0;
-    /// Its target from the next cycle on; the path planner gets it one cycle before.
+    /// Its target from the next cycle on; published to the path planner one cycle earlier.
     double next = 0;
     std::int32_t counts = 0;
     bool isLimited = false;  ///< by a soft limit
@@ -34,19 +34,19 @@ class ExternalOffsets {
   public:
     /// One cycle.
     void step(const OffsetInputs &in) noexcept;
-    /// Range of the path that is driven or recorded for reverse run, with `pose` in it. `isNew`: nothing is
-    /// recorded.
+    /// Range of the path that is executed or recorded for reverse run, extended by `pose`. `isNew`: nothing
+    /// is recorded.
     const TravelRange &extend_travelled(const geometry::Pose &pose, bool isNew) noexcept;
 
-    /// The limits have changed; all offsets end if a joint is not homed any more.
+    /// Called after a change of the limits. All offsets end if a joint is no longer homed.
     void configure(const FoldedLimits &limits, const AxisMap &map) noexcept;
-    /// Offsets are zero from here, and the counts start here; nothing moves.
+    /// Offsets are zero from here, and counts start here; nothing moves.
     void start_at_zero(const Inputs &in) noexcept;
-    /// All of them brake, from this cycle on.
+    /// Brakes all offsets from this cycle on.
     void stop() noexcept;
     void stop_at_once() noexcept;
 
-    /// Bit per axis that may have one.
+    /// Bit per axis that may have an offset.
     std::uint32_t axes() const noexcept { return axes_; }
     bool isEmpty() const noexcept { return axes_ == 0; }
     /// Joints that these axes move.
@@ -56,10 +56,10 @@ class ExternalOffsets {
     /// By a soft limit.
     bool isLimited() const noexcept { return limited_; }
     bool isAtRest() const noexcept;
-    /// True when new counts, or the distance to the request, require a motion.
+    /// True if new counts, or the distance to the request, require motion.
     bool isMotionRequested(const std::array<OffsetInput, MAX_AXES> &pins) const noexcept;
 
-    /// Their range from here on.
+    /// Range of the offsets from here on.
     PoseRange range() const noexcept;
     /// `pose` without the offsets: its programmed or jogged part.
     geometry::Pose remove_from(const geometry::Pose &pose) const noexcept;
@@ -75,12 +75,12 @@ class ExternalOffsets {
     JogRange range_in_joints(const OffsetInputs &in, PoseRange others, int axis) const noexcept;
 
     std::uint32_t axes_ = 0;
-    /// Axes among them since the last cycle: what pins were turned before has no effect.
+    /// Axes that may have an offset since the last cycle; earlier counts have no effect.
     std::uint32_t added_ = 0;
     std::array<ExternalOffset, MAX_AXES> axis_{};
     SharedJoints shared_;
     geometry::Pose pose_;
-    TravelRange travelled_;  ///< by the path in reverse run
+    TravelRange travelled_;  ///< range of the path during reverse run
     bool limited_ = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Digital and analog outputs, set at once by command or synchronized with the path.
+// Digital and analog outputs, set at once by a command or synchronized with the path.
 #pragma once
 
 #include <array>
@@ -21,11 +21,11 @@ class MachineOutputs {
 
     CommandResult take(const SetDigitalOutput &command) noexcept;
     CommandResult take(const SetAnalogOutput &command) noexcept;
-    /// An output change whose position on the path has been passed; the path planner has checked its index.
-    /// While a stop brakes along the path, nothing is switched on and no value grows: only changes that
-    /// switch something off are done.
+    /// Sets an output whose position on the path was passed; the path planner has checked its index. While a
+    /// stop brakes along the path, nothing is switched on and no value grows: only changes that switch
+    /// something off are done.
     void fire(const trajectory::PathEvent &event, bool isStopping) noexcept;
-    /// Outputs, and the values of the inputs.
+    /// Writes the outputs, and the values of the inputs.
     void fill(const Inputs &in, Outputs &out) const noexcept;
 
     bool hasDigital(int index) const noexcept { return index >= 0 && index < num_digital_; }

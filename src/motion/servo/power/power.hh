@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Machine on or off, the mode of motion, and the stop that ends in off.
+// Machine on or off, the mode of motion, and the stop that ends with off.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +24,15 @@ class Power {
     bool isEnabled() const noexcept { return enabled_; }
     /// Category 1: everything brakes, off at standstill.
     bool isStopping() const noexcept { return stopping_; }
-    /// Accepts commands that move something.
+    /// True if commands that move something are accepted.
     bool isReady() const noexcept { return enabled_ && !stopping_; }
-    /// Counts how often it was switched on.
+    /// Counts how often the machine was switched on.
     std::uint32_t enables() const noexcept { return enables_; }
 
-    /// Modes change only at standstill; NONE when the change is possible, or not needed.
+    /// Modes change only at standstill. NONE if the change is possible, or not needed.
     Reason check_mode(Mode mode, const ModeConditions &conditions) const noexcept;
     void set_mode(Mode mode) noexcept { mode_ = mode; }
-    /// True when the stop begins with this call.
+    /// True if the stop starts with this call.
     bool begin_stop() noexcept;
     void switch_on() noexcept;
     void switch_off() noexcept;

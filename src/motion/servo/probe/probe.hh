@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The probe: ends probing moves where it trips; a contact in any other motion is a fault.
+// The probe: ends a probing move where it trips; contact during any other motion is a fault.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,28 @@ namespace mw::motion {
 struct ProbeInputs {
     bool isClosed = false;
     trajectory::Sequence probing_move = 0;  ///< the active probing move, 0: none
-    bool isAway = false;                    ///< that move probes for the loss of contact
-    bool isMoving = false;                  ///< anything moves, and no stop is active
-    bool isDropping = false;                ///< the path brakes and the rest will be dropped
+    bool isAway = false;                    ///< the move probes for loss of contact
+    bool isMoving = false;                  ///< something moves, and no stop is active
+    bool isDropping = false;                ///< the path brakes, and the rest will be dropped
 };
 
 enum class ProbeEvent : std::uint8_t {
     NONE,
-    FOUND,    ///< the probing move is to end; `position` is the position of the machine
-    TOUCHED,  ///< in a move that is no probing move
+    FOUND,    ///< the probing move must end; `position` is the position of the machine
+    TOUCHED,  ///< contact in a move that is not a probing move
 };
 
 class TouchProbe {
   public:
-    /// One cycle while the machine is on. `position`: measured.
+    /// One cycle while the machine is on. `position`: measured position.
     ProbeEvent step(const ProbeInputs &in, const geometry::Pose &position) noexcept;
-    /// At the end of each cycle: the state of the probe in it.
+    /// Called at the end of each cycle with the probe state in it.
     void end_cycle(bool isClosed) noexcept { was_closed_ = isClosed; }
     CommandResult take(const ClearProbeFlag &command) noexcept;
     void fill(bool isClosed, Status &status) const noexcept;
 
     bool wasClosed() const noexcept { return was_closed_; }
-    /// Counts probing moves that were tripped.
+    /// Counts probing moves that tripped.
     std::uint32_t trips() const noexcept { return trips_; }
 
   private:

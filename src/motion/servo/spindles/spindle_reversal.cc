@@ -8,21 +8,20 @@ namespace mw::motion {
 
 namespace {
 
-/// A spindle that has run back by this much, and by more than its encoder may count to and fro, has reversed;
-/// below the next speed it counts as stopped.
+/// A spindle that has moved back by this much, and by more than the jitter of its encoder, has reversed.
+/// Below the next speed it counts as stopped.
 constexpr double TURNED = 0.02;  // [turns]
 constexpr double TURNED_STEPS = 2;
 constexpr double STANDING_RPS = 0.05;
-constexpr double STANDING_TURNS =
-    1e-3;  // in a cycle: the encoder of a stopped spindle may still count to and fro
-/// Maximum time to wait for a spindle to reverse or reach its speed.
+constexpr double STANDING_TURNS = 1e-3;  // in a cycle: the counts of a stopped spindle may still jitter
+/// Maximum time for a spindle to reverse or reach its speed.
 constexpr double LONGEST_S = 60;
-/// Minimum, so that a spindle that reverses within a cycle has a ramp.
+/// Minimum, so that a spindle that reverses within one cycle has a ramp.
 constexpr double LEAST_TURNS = 1e-4;
-/// Shortest braking that can be measured, in cycles, and in the time of a step of the encoder.
+/// Minimum measurable braking, in cycles, and in the time of an encoder step.
 constexpr double RESOLUTION = 2, RESOLUTION_STEPS = 10;
-/// A spindle that gets ahead of its speed at the command by more than this part, and by what its encoder
-/// leaves open, was still accelerating.
+/// A spindle that exceeds its speed at the command by more than this factor and its encoder resolution was
+/// still accelerating.
 constexpr double FASTER = 1.02;
 
 double resolution_s(const SpindleReversal &t, const SpindleMotion &now) noexcept {
@@ -47,7 +46,7 @@ void begin(SpindleReversal &t, const SpindleMotion &now) noexcept {
         t.speed = std::abs(now.wanted);
         t.quarter_s = 0;
     } else if (now.wanted != t.wanted) {
-        t.watching = SpindleReversal::Watching::NOTHING;  // data from here belong to several commands
+        t.watching = SpindleReversal::Watching::NOTHING;  // later data belong to several commands
     }
     if (isReversal || isStart) {
         t.seconds = t.arrived_s = t.left_s = 0;
@@ -55,8 +54,8 @@ void begin(SpindleReversal &t, const SpindleMotion &now) noexcept {
 }
 
 /// Time from the command to standstill: the middle of the time for which the count was at its farthest step.
-/// A spindle that brakes evenly is within it for sqrt(2 step/ramp) before it is stopped; what takes longer is
-/// a pause of the drive.
+/// A spindle that brakes evenly stays there for sqrt(2 step/ramp) before it stops; a longer time is a pause
+/// of the drive.
 double standstill_s(const SpindleReversal &t, double overrun, double step) noexcept {
     const double braking_s = std::max(2.0 * (t.arrived_s - overrun / t.speed), 0.0);
     const double within_step_s = std::sqrt(2.0 * step * braking_s / t.speed);
@@ -83,8 +82,8 @@ void learn_reversal(SpindleReversal &t, const SpindleMotion &now) noexcept {
     t.watching = SpindleReversal::Watching::NOTHING;
 }
 
-/// The start at the ramp as it is between a quarter and half of the speed. A start takes as long to half of
-/// the speed as the overrun of a reversal takes at full speed.
+/// Learns the ramp of a start between a quarter and half of the speed. A start takes as long to half of the
+/// speed as the overrun of a reversal takes at full speed.
 void learn_start(SpindleReversal &t, const SpindleMotion &now) noexcept {
     const double speed = std::abs(now.shown_speed);
     if (t.quarter_s <= 0 && speed >= 0.25 * t.speed) {

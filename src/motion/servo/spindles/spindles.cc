@@ -12,7 +12,7 @@ std::size_t index(int i) noexcept {
     return static_cast<std::size_t>(i);
 }
 
-/// Constant surface speed: the speed follows the distance from the axis of rotation.
+/// Constant surface speed: the speed depends on the distance from the axis of rotation.
 double speed_of(const Spindle &s, double x) noexcept {
     if (s.css_factor == 0 || !s.isOn) {
         return s.speed_rpm;
@@ -67,7 +67,7 @@ double scale_of(const Spindle &s) noexcept {
     return s.isOverrideEnabled ? s.scale : 1.0;
 }
 
-/// A tap keeps the override at its start. A tap that was stopped leaves the spindle off.
+/// A tap keeps the override of its start. After an aborted tap the spindle is off.
 void follow_tap(Spindle &s, int n, const TapTurning &tap) noexcept {
     const bool isTapping = tap.spindle == n;
     s.tap_scale = isTapping && !s.isTapping ? scale_of(s) : s.tap_scale;
@@ -239,7 +239,7 @@ void Spindles::fill(const Inputs &in, bool isEnabled, Outputs &out) const noexce
         const SpindleInputs &pins = in.spindle[index(n)];
         SpindleOutputs &o = out.spindle[index(n)];
         o.speed_rpm = s.out_rpm;
-        // A drive with only these pins stops at S0, inhibit and an override of 0.
+        // A drive with only these pins stops at S0, at inhibit and at an override of 0.
         o.isForward = isEnabled && s.out_rpm > 0;
         o.isReverse = isEnabled && s.out_rpm < 0;
         o.isOn = o.isForward || o.isReverse;
@@ -254,7 +254,7 @@ void Spindles::fill(const Inputs &in, bool isEnabled, Outputs &out) const noexce
         st.scale = s.scale;
         st.speed_in_rps = pins.speed_in_rps;
         st.revs = pins.revs;
-        st.direction = !s.isOn ? 0 : s.commanded_rpm < 0 ? -1 : 1;  // at S0 1, as LinuxCNC
+        st.direction = !s.isOn ? 0 : s.commanded_rpm < 0 ? -1 : 1;  // 1 at S0, as in LinuxCNC
         st.isOn = s.isOn && s.commanded_rpm != 0;
         st.isAtSpeed = pins.isAtSpeed;
         st.isBrakeOn = s.isBrakeOn;

@@ -20,7 +20,7 @@ struct Spindle {
     double out_rpm = 0;
     double commanded_rpm = 0;  ///< within the limits of the spindle, before the override
     double turns = 0;          ///< last valid count
-    double speed_rps = 0;      ///< measured; 0 while it is no number
+    double speed_rps = 0;      ///< measured; 0 while the pin is not a number
     bool isOn = false, isOverrideEnabled = true, isBrakeOn = true;
     bool isOrienting = false, isLocked = false;
     double orient_angle = 0;
@@ -33,12 +33,12 @@ struct Spindle {
 
 /// Request of an active tap to its spindle.
 struct TapTurning {
-    int spindle = -1;  ///< -1: no tap is active
-    double factor =
-        1;  ///< factor of the speed at which the spindle was started; 0: off, and not switched on by itself
+    int spindle = -1;   ///< -1: no tap is active
+    double factor = 1;  ///< factor of the speed at which the spindle was started; 0: off, and it does not
+                        ///< switch itself on
 };
 
-/// A spindle as its counts show it.
+/// State of a spindle from its counts.
 struct CountedSpindle {
     double turns_per_s = 0;
     double step = 0;  ///< of its encoder [turns]
@@ -50,7 +50,7 @@ struct SpindleCycle {
     double period_s = 1e-3;
     std::array<CountedSpindle, MAX_SPINDLES> counted{};
 };
-/// It may run in both directions.
+/// True if the spindle may run in both directions.
 bool isReversible(const Settings &settings, int n) noexcept;
 /// Off, or at speed.
 bool isReady(const Spindle &spindle, const SpindleInputs &in) noexcept;
@@ -65,19 +65,19 @@ class Spindles {
     CommandResult take(const SpindleOff &command) noexcept;
     CommandResult take(const SpindleOrient &command, bool isEnabled) noexcept;
     CommandResult take(const SpindleBrake &command) noexcept;
-    /// Of one spindle or, with -1, of all.
+    /// Sets the override of one spindle or, with -1, of all.
     CommandResult take(const SetScale &command) noexcept;
     CommandResult take(const SetSwitch &command) noexcept;
     /// The machine goes off.
     void switch_off() noexcept;
 
-    /// Values of the pins of the spindles. Returns a bit per spindle whose feedback is no number.
+    /// Reads the pins of the spindles. Returns a bit per spindle whose feedback is not a number.
     std::uint32_t read_feedback(const Inputs &in) noexcept;
-    /// One cycle. Returns a bit per spindle whose orientation has failed in it; `orient_fault` has the code.
+    /// One cycle. Returns a bit per spindle whose orientation failed in it; `orient_fault` has the code.
     std::uint32_t step(const Inputs &in, const Settings &settings, const SpindleCycle &cycle) noexcept;
 
     const Spindle &operator[](int n) const noexcept { return spindle_[static_cast<std::size_t>(n)]; }
-    /// How a spindle stops when it is commanded to reverse.
+    /// The way a spindle stops after a command to reverse.
     trajectory::SpindleBrakings brakings(int n, const Settings &settings) const noexcept;
     void fill(const Inputs &in, bool isEnabled, Outputs &out) const noexcept;
 

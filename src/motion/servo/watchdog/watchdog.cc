@@ -21,7 +21,7 @@ CommandResult Watchdog::take(const Heartbeat &) noexcept {
 }
 
 bool Watchdog::step(const TaskSigns &signs, double period_s) noexcept {
-    constexpr double LOOK_S = 0.1;  // twice the time between two looks
+    constexpr double LOOK_S = 0.1;  // twice the interval between two checks
     constexpr double SHARE_OF_STARVED = 0.25;
     unseen_s_ = signs.looks != last_.looks ? 0 : unseen_s_ + period_s;
     if (signs.loops != last_.loops) {

@@ -39,7 +39,7 @@ TEST(CartesianPositionPart, JointsLeadOrThePoseDoes) {
     EXPECT_EQ(position.fb()[0], 2.9);
 }
 
-/// Models that iterate come back to a place within 1e-4: no step, however slow the joints are.
+/// Iterative models return to a position within 1e-4: no step, however slow the joints are.
 TEST(LeadPart, APoseLeadsToWhereTheJointsStandWithinACycleOfThem) {
     const kinematics::CoreXy kinematics;
     for (const double velocity : {100.0, 0.001}) {
@@ -219,7 +219,7 @@ TEST(HeadingPart, LinesPointAlongTheirWay) {
 
 TEST(HeadingPart, ArcsPointAlongTheirTangentAndToTheirCentre) {
     constexpr double PI = 3.14159265358979323846;
-    // G2 from three o'clock: down first, the centre to the left of the page.
+    // G2 from three o'clock: first downwards, with the centre to the left.
     const auto clockwise = arc(place(75, 50), place(75, 50), place(50, 50), -2 * PI);
     Heading h = heading_of(clockwise, MotionType::ARC, place(75, 50), false, {});
     EXPECT_EQ(h.g_code, 20);

@@ -35,7 +35,7 @@ struct CorrectionPart : ::testing::Test {
         ASSERT_EQ(load(1, 3, 0, 0.3, 0.05), Reason::NONE);
         ASSERT_EQ(load(2, 3, 10, 0.5, 0.6), Reason::NONE);
     }
-    /// Moves there at a low speed and waits.
+    /// Moves there at low speed and waits.
     double go(double to) {
         while (at != to) {
             at += std::clamp(to - at, -0.02, 0.02);
@@ -69,7 +69,7 @@ TEST_F(CorrectionPart, ATableTakesThePlaceOfBacklash) {
     EXPECT_NEAR(go(5), 0.4, 1e-12);
 }
 
-/// [TRAJ]MAX_LINEAR_JERK is one of lengths.
+/// [TRAJ]MAX_LINEAR_JERK applies to lengths.
 TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk) {
     limit_jerk();
     set(Parameter::JOINT_BACKLASH, 0.1);
@@ -91,10 +91,10 @@ TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk) {
     EXPECT_EQ(cycles_of(J / 50, 1), least);
 }
 
-/// The least time for a way at which the speed and the acceleration are reached: d / v + v / a + a / j.
+/// The minimum time for a distance at which speed and acceleration are reached: d / v + v / a + a / j.
 TEST_F(CorrectionPart, ALongPlayIsTakenUpInTheLeastTime) {
     limit_jerk();
-    constexpr double PLAY = 20, HALF = 0.5;  // of what the joint can do
+    constexpr double PLAY = 20, HALF = 0.5;  // fractions of the joint limits
     constexpr int REVERSAL = 2000;
     set(Parameter::JOINT_BACKLASH, PLAY);
     int last = 0;
@@ -129,7 +129,7 @@ TEST_F(CorrectionPart, WhatIsNoTableIsRefused) {
     EXPECT_EQ(correction.table.count, 0) << "taken away";
 }
 
-/// Swings of all lengths with what a joint can do.
+/// Oscillates over all distances within the joint limits.
 void swing(CorrectionPart &part, testing::LimitChecker &checker) {
     trajectory::AxisMotion jog;
     jog.max_velocity = V;
@@ -180,7 +180,7 @@ TEST_F(CorrectionPart, ASlideIsWhereItIsToBeHoweverSoonTheJointTurnsBack) {
     set(Parameter::JOINT_BACKLASH, PLAY);
     limit_jerk();
     go(10);
-    double slide = at;  // of a machine with play, pushed by its motor
+    double slide = at;  // slide of a machine with play, pushed by its motor
     plants::Random random(7);
     int short_turns = 0;
     for (int n = 0; n < 300; ++n) {
@@ -206,7 +206,7 @@ TEST_F(CorrectionPart, ASlideIsWhereItIsToBeHoweverSoonTheJointTurnsBack) {
 }
 
 /// A slide with play on an uneven screw, against which the joint stops at full speed: a motor that came back
-/// from behind its place would leave it there.
+/// from past its position would leave it there.
 TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe) {
     constexpr double PLAY = 0.14, WAVE_MM = 100, UNEVEN = 0.15, PITCH = 0.5;
     const auto uneven = [](double x) { return UNEVEN * std::sin(x * 2 * M_PI / WAVE_MM); };
@@ -220,7 +220,7 @@ TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe) {
     jog.max_velocity = V;
     jog.max_acceleration = A;
     jog.max_jerk = J;
-    double slide = 0;  // by the angle of the screw
+    double slide = 0;  // from the angle of the screw
     plants::Random random(7);
     for (int n = 0; n < 200; ++n) {
         jog.target = random.real(-35, 35);
@@ -231,7 +231,7 @@ TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe) {
             const double motor = jog.position + correction.position;
             slide = std::clamp(slide, motor - 0.5 * PLAY, motor + 0.5 * PLAY);
         }
-        // The nut's position follows from the screw's angle and its unevenness.
+        // The nut position follows from the angle of the screw and its unevenness.
         double place = slide;
         for (int i = 0; i < 20; ++i) {
             place = slide - uneven(place);
@@ -261,12 +261,12 @@ TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest) {
     EXPECT_NEAR(go(1), 0.2, 1e-12);
 }
 
-/// What had been under way before is no speed of the next move.
+/// The earlier speed must not enter the next move.
 TEST_F(CorrectionPart, SwitchedOffBetweenTheSidesOfATableItGoesOnFromRest) {
     load_three();
     go(5);
     double place = 5;
-    for (int n = 0; n < 12; ++n) {  // back, where the table has other values
+    for (int n = 0; n < 12; ++n) {  // back, where the table has different values
         place -= 0.01;
         step(correction, settings, 0, place, CYCLE_S);
     }
@@ -298,8 +298,8 @@ TEST_F(CorrectionPart, AZeroThatIsFoundTellsHowMuchMoreIsAdded) {
     EXPECT_NEAR(go(10), 0.5, 1e-12) << "and nothing moves for it";
 }
 
-/// A rotary joint after many revolutions: a position is less exact there, and rounding may move a stopped
-/// joint to and fro.
+/// A rotary joint after many revolutions: the position is less precise there, and rounding may move a stopped
+/// joint.
 TEST_F(CorrectionPart, FarOutTheRoundingOfAStopTurnsNothingBack) {
     constexpr double PLAY = 0.3;
     set(Parameter::JOINT_BACKLASH, PLAY);

@@ -12,7 +12,7 @@
 namespace mw::motion::example {
 
 // begin of the declaration
-/// A digital output goes to its other state.
+/// A command that changes a digital output to its other state.
 struct FlipDigitalOutput {
     int index = 0;
 };
@@ -65,8 +65,8 @@ TEST(ExtendingMotion, TheNewCommandDoesWhatItSaysAndRefusesWhatIsNotThere) {
     EXPECT_EQ(outputs.digital(), 0b1100U) << "a rejected command changes nothing";
 }
 
-/// What step 3 of the page says: handlers for the old commands alone are no visitor of the new variant, with
-/// the new one in the line of the outputs they are.
+/// Tests step 3 of the page: handlers for the old commands only are not a visitor of the new variant; with
+/// the line of the outputs they are.
 TEST(ExtendingMotion, AVisitorThatForgetsTheNewCommandDoesNotCompile) {
     const auto others = []<class C>(const C &)
         requires(IS_ALTERNATIVE<C, CommandBody> && !TakenByOutputs<C>)
@@ -102,7 +102,7 @@ TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand) {
         ASSERT_GT(example.size(), 80U);
         EXPECT_NE(page.find("```cpp\n" + example + "```\n"), std::string::npos) << example;
     }
-    // The dispatcher has the line that the new name joins, as on the page, without that name.
+    // The dispatcher contains the line that the new name is added to, as on the page.
     const std::string joined = ", FlipDigitalOutput> auto &c) { return parts.outputs.take(c); },";
     const std::size_t place = page.find(joined);
     ASSERT_NE(place, std::string::npos);

@@ -67,8 +67,7 @@ TEST_F(HomingDrivePart, AJointThatIsLeftOutIsNotHomedWhicheverItIs) {
     }
 }
 
-/// A latch faster than the joint is driven at the joint's speed, and backlash is compensated within its
-/// travel.
+/// A latch velocity above the joint's maximum is limited, and backlash is compensated within its travel.
 TEST_F(HomingDrivePart, PlayIsTakenUpAtNoMoreThanTheSpeedOfTheJoint) {
     const auto set = [&](Parameter p, double value) {
         settings.set({static_cast<std::uint16_t>(p), 0, value}, 2, 1);
@@ -76,7 +75,7 @@ TEST_F(HomingDrivePart, PlayIsTakenUpAtNoMoreThanTheSpeedOfTheJoint) {
     set(Parameter::JOINT_MAX_VELOCITY, 10);
     set(Parameter::JOINT_MAX_ACCELERATION, 100);
     set(Parameter::JOINT_BACKLASH, 0.1);
-    const double seconds = 2 * std::sqrt(0.1 / 50);  // with half of the acceleration, there and back
+    const double seconds = 2 * std::sqrt(0.1 / 50);  // with half of the acceleration, out and back
     for (const double latch : {2.0, -8.0, 50.0}) {
         set(Parameter::JOINT_HOME_LATCH_VEL, latch);
         drive.configure(0, settings);
@@ -107,7 +106,7 @@ TEST_F(HomingDrivePart, VolatileHomesAreLostWithPower) {
 
 TEST_F(HomingDrivePart, WhatFailsIsToldOnceAndWhatIsAbortedIsNot) {
     settings.set({static_cast<std::uint16_t>(Parameter::JOINT_HOME_SEARCH_VEL), 0, 5}, 2, 1);
-    drive.configure(0, settings);  // searches, and has no speed to latch with
+    drive.configure(0, settings);  // has a search velocity but no latch velocity
     drive.take(Home{0}, conditions);
     drive.begin_due(conditions);
     run();

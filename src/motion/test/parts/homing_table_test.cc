@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The table of homing as docs/integrator/homing.md shows it, and what every event does in every state.
+// Compares the homing table with docs/integrator/homing.md, and tests every event in every state.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -150,7 +150,7 @@ std::string made_table() {
     return out;
 }
 
-/// Joint 0 is walked through; joint 1 homes in the same sequence.
+/// Joint 0 is driven through the states; joint 1 homes in the same sequence.
 struct Walk {
     homing::Homing own;
     HomingDrive drive{1e-3, &own};
@@ -188,7 +188,7 @@ struct Walk {
         own.step(inputs, commands);
         hasStopped = hasStopped || commands[0].move == homing::Move::STOP;
     }
-    /// What is so in `state` as long as nothing happens.
+    /// Sets inputs of `state` without events.
     void be_quiet(State state) {
         constexpr std::array CLOSED = {State::INITIAL_BACKOFF, State::SEARCH_STOP, State::LATCH_BACKOFF,
                                        State::INDEX,           State::LATCHED,     State::LATCHED_STOP};
@@ -197,12 +197,12 @@ struct Walk {
                              state == State::WAIT_FOR_GROUP;
         inputs[0].isUnlocked = state != State::IDLE && state != State::UNLOCK;
         inputs[1].isUnlocked = inputs[0].isUnlocked;
-        // The other one searches, or does the same up to the latch.
+        // The other joint searches, or does the same up to the latch.
         if (own.parameters(1).axis == 0 && state != State::INDEX && state != State::LATCHED) {
             inputs[1] = inputs[0];
         }
     }
-    /// The event that leads on from `state`.
+    /// Sends the event that leads to the next state.
     void lead_on(State state) {
         inputs[0].isAtRest = true;
         inputs[0].isSwitchClosed = state == State::START || state == State::SEARCH ||
@@ -216,7 +216,7 @@ struct Walk {
         inputs[1].isIndexEnabled = own.isIndexWanted(1);
         step_while_in(state);
     }
-    /// Long enough for contacts to settle.
+    /// Steps long enough for contacts to settle.
     void step_while_in(State state) {
         constexpr int CYCLES = 25;
         for (int n = 0; n < CYCLES && own.state(0) == state; ++n) {

@@ -319,7 +319,7 @@ TEST(JointLoad, HasTheDerivativesOfJointsByTheAxes) {
     }
 }
 
-/// An arm that reaches X with either sense of joint 0 and keeps the given one; joint 1 does not move.
+/// An arm that reaches X with either sign of joint 0 and keeps the current sign; joint 1 does not move.
 struct Elbow final : kinematics::Kinematics {
     kinematics::Kind kind() const noexcept override { return kinematics::Kind::BOTH; }
     kinematics::Status forward(const double *joints, geometry::Pose &pose) const noexcept override {
@@ -365,7 +365,7 @@ TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
     machine.num_joints = 5;
     Jogs jogs = make();
     geometry::Pose pose;
-    pose[0] = 39;  // C swings this towards Y and on to -39
+    pose[0] = 39;  // C swings this towards Y and further to -39
     pose[1] = 15;
     jogs.reset_axes(pose);
     JogSituation s = free_mode();

@@ -25,7 +25,7 @@ struct JointsPart : testing::Test {
             set(Parameter::JOINT_MIN_FERROR, j, 0.1);
         }
     }
-    /// The first fault, which is that of joint j.
+    /// The first fault, which must be that of joint j.
     JointFault fault_of(int j, const JointCheck &how = {}) {
         int joint = 0;
         const JointFault fault = joints.find_fault(joint, settings, how);
@@ -139,7 +139,7 @@ TEST_F(JointsPart, AJointThatIsLeftOutKeepsItsPlaceWhileItsAmplifierIsOn) {
     EXPECT_EQ(joints.take(SetJointActive{0, false}, {false, false, false}).reason, Reason::NONE);
     EXPECT_TRUE(joints[0].isAmpWanted) << "the amplifier stays as it is";
     for (int n = 1; n <= 100; ++n) {
-        joints.follow(0, 1 + 0.01 * n, T);             // where a pose would have it
+        joints.follow(0, 1 + 0.01 * n, T);             // the position that a pose would require
         in.joint[0].motor_pos_fb = motor - 0.001 * n;  // the axis gives way
         joints.read_feedback(in);
         EXPECT_EQ(fault_of(0), JointFault::NONE);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The small parts: power and mode, watchdog, outputs.
+// Small parts: power and mode, watchdog, outputs.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -59,7 +59,7 @@ TEST(WatchdogPart, TheKernelsWordCountsWithoutAnyTime) {
     EXPECT_TRUE(watchdog.isTaskLost());
 }
 
-/// The watchdog's time of 0.5 s, with a host that looks every 50 ms until `looked_s`.
+/// The watchdog's time of 0.5 s, with a host that checks every 50 ms until `looked_s`.
 double found_after_s(double looked_s) {
     Watchdog watchdog;
     watchdog.take(SetWatchdog{true, 0.5});

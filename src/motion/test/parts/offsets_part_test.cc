@@ -37,7 +37,7 @@ TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain) {
     go(1);
     EXPECT_EQ(offsets.pose()[0], 0);
     EXPECT_EQ(offsets.range().high[0], 15) << "the path planner is informed first";
-    programmed.axes.high[0] = 18;  // a move was taken before that was read
+    programmed.axes.high[0] = 18;  // a move was accepted before the pin was read
     go(1);
     EXPECT_NEAR(offsets.range().high[0], 2, 1e-9) << "not for one cycle towards 15";
     go(3000);
@@ -49,7 +49,7 @@ TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain) {
     EXPECT_FALSE(offsets.isLimited());
 }
 
-/// A change of the kinematics or of a ratio is no turn of a wheel.
+/// A change of the kinematics or of a ratio is not a wheel count.
 TEST_F(OffsetsPart, WhatWasTurnedBeforeAnAxisCouldHaveOneMovesNothing) {
     for (const bool isEnabled : {true, false}) {
         in.axis_offset[1].isEnabled = isEnabled;
@@ -102,8 +102,8 @@ TEST_F(OffsetsPart, CountsWrapAndWhatIsNoNumberCountsForNothing) {
     EXPECT_NEAR(offsets.pose()[0], 1, 1e-9) << "what is turned while they are not honoured is lost";
 }
 
-/// X and Y of belts: what one takes of a joint's travel is not there for the other, nor for what is
-/// programmed. To either side.
+/// Belts: travel of a joint that X uses is not available for Y, nor for the program. Tested in both
+/// directions.
 TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom) {
     const kinematics::CoreXy corexy;
     limits.offset[1] = {10, 100, 0};
@@ -118,7 +118,7 @@ TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom) {
         offsets.configure(limits, axis_map(corexy, 3));
         in.axis_offset[1] = in.axis_offset[0];
         offsets.start_at_zero(in);
-        // A move leads there, another back from it.
+        // A move leads there, another leads back.
         (side > 0 ? programmed.joints.high : programmed.joints.low)[0] = 20 * side;
         in.axis_offset[0].counts = 80 * side;
         in.axis_offset[1].counts = 80 * side;
@@ -132,7 +132,7 @@ TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom) {
         }
         EXPECT_NEAR(offsets.pose()[0] + offsets.pose()[1], 10 * side, 1e-9) << "all there is";
         EXPECT_TRUE(offsets.isLimited());
-        in.axis_offset[1].counts = -80 * side;  // Y leads back, and X has its room
+        in.axis_offset[1].counts = -80 * side;  // Y moves back, and X can use its travel
         go(4000);
         EXPECT_NEAR(offsets.pose()[0], 8 * side, 1e-9);
         EXPECT_NEAR(offsets.pose()[1], -8 * side, 1e-9);

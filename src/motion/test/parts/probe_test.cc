@@ -69,7 +69,7 @@ TEST(ProbePart, BrakingBehindAContactIsNoTouch) {
     EXPECT_EQ(probe.step(in, at(2)), ProbeEvent::NONE);
 }
 
-/// An earlier trip excuses no contact that comes while nothing brakes, and no braking one that follows no
+/// An earlier trip does not excuse contact while nothing brakes; braking does not excuse contact without a
 /// trip.
 TEST(ProbePart, ATripOrAStopAloneExcusesNoContact) {
     TouchProbe probe;

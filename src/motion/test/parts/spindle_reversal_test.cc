@@ -25,7 +25,7 @@ struct Reversals : testing::Test {
             spindle.run(wanted, 0, T);
         }
     }
-    /// Revolutions that it takes by the truth to reverse from its present speed.
+    /// True revolutions for a reversal from the current speed.
     double overrun(plants::SpindlePlant &spindle, double wanted) {
         const double sense = wanted > 0 ? -1 : 1, from = sense * spindle.turns();
         double farthest = from;
@@ -60,7 +60,7 @@ TEST_F(Reversals, AreLearnedForEachDirection) {
     EXPECT_NEAR(brakings_of(reversal, 20)[1].ramp, 33, 1);
 }
 
-/// One reversal, or one start, gives delay and ramp, so that the overrun is known at every speed.
+/// One reversal or start determines delay and ramp, so the overrun is known at every speed.
 TEST_F(Reversals, GiveTheOverrunAtEverySpeed) {
     for (const int counts : {200, 1000, 4096, 10000}) {
         for (const double reaction_s : {0.0, 0.01, 0.06}) {
@@ -86,8 +86,8 @@ TEST_F(Reversals, GiveTheOverrunAtEverySpeed) {
     }
 }
 
-/// With any measurement, the result repeats the measured overrun, and scales it by at least the
-/// speed and at most its square.
+/// The calculated overrun matches the measurement and scales at least with the speed and at most with its
+/// square.
 TEST_F(Reversals, StayWithinTheMeasurementWhateverItIs) {
     std::mt19937_64 random(3);
     const auto real = [&](double low, double high) {
@@ -107,7 +107,7 @@ TEST_F(Reversals, StayWithinTheMeasurementWhateverItIs) {
     }
 }
 
-/// Of drives that are not as the model: exact at the speed that was measured.
+/// Drives that differ from the model: exact at the measured speed.
 TEST_F(Reversals, OfADriveWithLagAreExactAtTheirSpeed) {
     for (const double lag_s : {0.005, 0.05, 0.15}) {
         for (const double ramp : {0.0, 33.0, 150.0}) {
@@ -124,7 +124,7 @@ TEST_F(Reversals, OfADriveWithLagAreExactAtTheirSpeed) {
     }
 }
 
-/// A drive that waits at standstill before it turns back brakes no more gently for that.
+/// The braking ramp is unaffected by a drive that waits at standstill before it reverses.
 TEST_F(Reversals, APauseAtStandstillIsNoPartOfTheBraking) {
     for (const int pause : {0, 30, 200, 1000}) {
         SCOPED_TRACE(pause);
@@ -161,7 +161,7 @@ TEST_F(Reversals, OneThatIsTakenBackTeachesNothing) {
     EXPECT_EQ(brakings_of(reversal, 0)[0].delay_s, before[0].delay_s);
 }
 
-/// The spindle gets faster until its drive reacts: no measurement of its reversal from the speed at the
+/// The spindle accelerates until its drive reacts, so the reversal is not measured from the speed at the
 /// command.
 TEST_F(Reversals, OneOfASpindleThatIsStillAcceleratingTeachesNothing) {
     plants::SpindlePlant spindle(drive_of(150, 0.04));

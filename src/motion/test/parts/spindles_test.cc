@@ -41,7 +41,7 @@ TEST_F(SpindlesPart, TurnOnlyWhileTheMachineIsOn) {
     EXPECT_EQ(rpm(), 0);
 }
 
-/// M3 and M4 release the brake, M5 engages it, and it may be released to turn one by hand.
+/// M3 and M4 release the brake and M5 engages it. It may be released to turn the spindle by hand.
 TEST_F(SpindlesPart, TheBrakeIsOffWhileOneTurns) {
     const auto isBrakeOn = [&] { return spindles[0].isBrakeOn; };
     for (const double speed : {300.0, -300.0}) {
@@ -182,7 +182,7 @@ TEST_F(SpindlesPart, OrientationLocksOrFailsOnce) {
     EXPECT_EQ(failed, 0U) << "told once";
 }
 
-/// The program that turns the spindle continues to do so while spindle.N.orient is on.
+/// The program that turns the spindle continues while spindle.N.orient is on.
 TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger) {
     const auto orient_pin = [&] {
         Outputs out;
@@ -254,8 +254,7 @@ TEST_F(SpindlesPart, StatusTellsWhatEachDoes) {
     EXPECT_TRUE(spindles[1].isBrakeOn);
 }
 
-/// A drive that has on, forward and reverse alone must not turn while the output is 0. Measured with
-/// LinuxCNC.
+/// A drive with only on, forward and reverse must not turn while the output is 0. Measured with LinuxCNC.
 TEST_F(SpindlesPart, PinsOfOnAndDirectionAreFalseWhileTheOutputIsZero) {
     const auto expect_pins = [this](bool isForward, bool isReverse) {
         rpm();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A path with fewer points that has the same appearance from a distance, for use while it is rotated.
+// A path with fewer points that looks the same from a distance, drawn while it is rotated.
 import type { Moves } from './chunks';
 
 /** No reduced copy is made if more than this fraction of the points remains. */

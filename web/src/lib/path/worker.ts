@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Reads a path outside of the main thread, which renews the leases of jogs in this time.
+// Reads a path in a worker, because the main thread renews the leases of jogs in this time.
 import { readChunks, type Chunk } from './chunks';
 
 export interface PathOrder {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The simulation outside of the main thread, which renews the leases of jogs in this time.
+// Runs the simulation in a worker, because the main thread renews the leases of jogs in this time.
 import { readChunks } from '../path/chunks';
 import type { News, Order } from './protocol';
 import { Session } from './session';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Values of the pictures for the selection of operations: few and large details.
+// Input values for the icons of operations: few and large details.
 import { packed } from '../../lib/conversational/dxf';
 import type { Values } from '../../lib/conversational/types';
 

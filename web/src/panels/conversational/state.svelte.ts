@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The program of the forms. It belongs to the page, so another view does not lose the values; a reload keeps
-// them, too.
+// The program of the forms. It belongs to the page: the values are kept when another view is shown, and after a reload.
 import { tc } from '../../lib/conversational/i18n/index.svelte';
 import { contextOf, newJob, type MachineFacts } from '../../lib/conversational/job';
 import { operationOf } from '../../lib/conversational/registry';
