@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""HAL against an installed LinuxCNC: the same work through both sets of programs, interleaved, as an ordinary user.
+"""Compares HAL with an installed LinuxCNC: both run the same work alternately, as an ordinary user.
 
-  dispatch   run time of a thread of 300 and2 per function, as the thread's own pin .time has it (median of 800 reads):
-             calls and their timing. LinuxCNC counts ticks of the processor's time stamp counter, ours nanoseconds;
-             ticks are converted by the rate in /proc/cpuinfo
+  dispatch   run time per function of a thread with 300 and2, from the thread's pin .time (median of 800 reads):
+             calls and their timing. LinuxCNC counts ticks of the processor's time stamp counter, Millwright nanoseconds;
+             ticks are converted with the rate in /proc/cpuinfo
   nets       `halcmd -f` of 3,000 net lines, elapsed
   read       `halcmd getp`, elapsed per call, one process each
   reads      the same 3,000 times in one `halcmd -f`
   start      `halrun` of a file that loads and starts a thread: start and stop of the realtime process, elapsed
 
-Prints the medians and their ratio (ours / reference) with what is aimed at; status 1 when one is not reached.
-Without a reference only our figures.
+Prints the medians, their ratio (Millwright / LinuxCNC) and the target. Exit status 1: a target is missed.
+Without LinuxCNC only Millwright is measured.
 """
 import argparse
 import json
@@ -58,7 +58,7 @@ def thread_time():
 
 
 def inside(what):
-    """Runs within `halrun` (loadusr -w): measures and leaves its figures in a file."""
+    """Runs in `halrun` (loadusr -w): measures and writes the figures to a file."""
     figures = {}
     if what == 'dispatch':
         figures['thread_time'] = thread_time()
@@ -71,7 +71,7 @@ def inside(what):
 
 
 def one_run(counts_ticks):
-    """All measurements for the programs on PATH, in the working folder; prints them."""
+    """Runs all measurements with the programs on PATH, in the working folder, and prints them."""
     me = os.path.abspath(__file__)
     figures = {}
     pins = [f'and2.{i}.{pin}' for i in range(NETS // 4) for pin in ('in0', 'in1', 'out', 'time')]
@@ -103,7 +103,7 @@ def measure(path, user, counts_ticks):
         command += ['--ticks'] if counts_ticks else []
         shutil.copy(__file__, os.path.join(folder, 'hal.py'))
         if user:
-            # A separate name space: LinuxCNC has one realtime process and one shared memory per machine.
+            # A separate namespace, because LinuxCNC has one realtime process and one shared memory per machine.
             command = ['unshare', '--ipc', '--pid', '--fork', '--mount-proc', '--kill-child', 'runuser', '-u', user,
                        '--', *command]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)

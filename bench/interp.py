@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The interpreter against an installed LinuxCNC: rs274 -g of both on the same programs, interleaved, as an ordinary user.
+"""Compares the interpreter with an installed LinuxCNC: rs274 -g of both runs the same programs alternately, as an ordinary user.
 
   surface   500,000 lines of a 3D surface, three axes, three decimals
   loop      1.2 million statements of a while loop with trigonometry and parameters
   calls     200,000 calls of a subroutine with three arguments
-  ten       10 million lines (--ten): peak memory of ours only
+  ten       10 million lines (--ten): peak memory of Millwright only
 
-Prints the medians of user and system time, their ratio (reference / ours), and the peak memory; status 1 when a ratio is below
-10 or the memory of `ten` above 500 MB. Without a reference only our figures.
+Prints the medians of user and system time, their ratio (LinuxCNC / Millwright), and the peak memory. Exit status 1: a ratio is
+below 10, or the memory of `ten` exceeds 500 MB. Without LinuxCNC only Millwright is measured.
 """
 import argparse
 import math

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the functions of motion cost in the servo thread, beside those of an installed LinuxCNC.
+"""Measures the functions of motion in the servo thread, with those of an installed LinuxCNC for comparison.
 
-Three joints, or more, run the same program of arcs and short lines by the clock; in every servo cycle the component sampler takes
-motion-controller.time and motion-command-handler.time. Runs are interleaved; the first second of each is left out.
-Prints median, 99th and 99.9th percentile and worst case of their sum [ns]; LinuxCNC counts ticks of the time stamp counter,
-which are converted by /proc/cpuinfo. On a host whose speed changes from one run to the next, --together runs both at the same time,
-their threads on the same processor, so that cycles of the two take turns; then ratios of pairs are what is to be read.
+Three or more joints run the same program of arcs and short lines in real time. In every servo cycle the component sampler reads
+motion-controller.time and motion-command-handler.time. Runs alternate; the first second of each is omitted. Prints median, 99th
+and 99.9th percentile and maximum of their sum [ns]; LinuxCNC counts ticks of the time stamp counter, which are converted with
+/proc/cpuinfo. If the speed of the host changes between runs, --together runs both at the same time with their threads on the same
+processor, so that their cycles alternate. Then read the ratios of pairs.
 usage: script/bench servo, or after it bench/servo.py [--joints 3] [--runs 5] [--cycles 200000] [--period 200000] [--together]
 """
 import argparse
@@ -73,7 +73,7 @@ def figures(folder, log, options, unit):
 
 
 def one_run(folder, options, isOurs):
-    """Median, 99th and 99.9th percentile and worst case of one run [ns]."""
+    """Median, 99th and 99.9th percentile and maximum of one run [ns]."""
     if isOurs:
         prepare(folder, options)
         return figures(folder, run_ours(folder), options, 1.0)
@@ -82,7 +82,7 @@ def one_run(folder, options, isOurs):
 
 
 def runs(work, options, has_reference):
-    """Figures of Millwright and LinuxCNC for each pair, one after the other or at the same time."""
+    """Figures of Millwright and LinuxCNC for each pair, alternately or at the same time."""
     with concurrent.futures.ThreadPoolExecutor(2 if options.together else 1) as pool:
         for run in range(options.runs):
             ours = pool.submit(one_run, work / f"ours-{run}", options, True)

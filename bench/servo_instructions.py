@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Instructions that motion takes in a cycle of the servo thread, beside those of an installed LinuxCNC.
+"""Counts the instructions of motion in a servo cycle, with those of an installed LinuxCNC for comparison.
 
-Machines of 3, 6 and 9 joints run the same program of arcs and short lines with valgrind's callgrind, which counts and does
-not look at the clock. What counts is what the servo thread spends in motion's functions and in all that they call: of ours
-in virtual time, a run taken from a longer one, so that switching on and homing do not count; of LinuxCNC between two looks
-while the program runs. usage: script/bench servo_instructions, or after
-it bench/servo_instructions.py [--joints 3,6,9] [--cycles 2000]
+Machines of 3, 6 and 9 joints run the same program of arcs and short lines with valgrind's callgrind, which counts instructions
+and does not depend on time. Counts the instructions of the servo thread in motion's functions and in all functions that they
+call. For Millwright, in virtual time, a short run is subtracted from a longer one, so that switching on and homing do not count.
+For LinuxCNC, the counts are read twice while the program runs.
+usage: script/bench servo_instructions, or after it bench/servo_instructions.py [--joints 3,6,9] [--cycles 2000]
 """
 import argparse
 import collections
@@ -31,7 +31,7 @@ MOST = 0.7  # of what LinuxCNC takes
 # Functions of Millwright that only the servo thread calls.
 OURS = re.compile(r"^\(anonymous namespace\)::(handle_commands|control)\(")
 
-# LinuxCNC's screen: homes, runs the program, looks twice while it runs.
+# LinuxCNC's screen: homes, runs the program, and reads the counts twice during the run.
 LOOK = """
 import os
 command.auto(linuxcnc.AUTO_RUN, 0)
@@ -50,7 +50,7 @@ time.sleep(0.5)
 
 
 def program(letters, seconds):
-    """Arcs and lines of a fifth of a millimetre at 20 mm/s in all letters, for at least so long."""
+    """Arcs and lines of 0.2 mm at 20 mm/s in all letters, for at least this time."""
     lines, length, x = ["G21 G17 G90 G64 P0.01 F1200"], 0.0, 0.0
     while length < 20.0 * seconds:
         lines += [f"G3 X{x + 4:.4f} Y0 I2 J0", f"G2 X{x + 8:.4f} Y0 I2 J0"]
@@ -77,7 +77,7 @@ def prepare(folder, letters, seconds):
 
 
 def calls_into(text, isCaller, isCallee):
-    """Calls and inclusive instructions by callee, of those from another library into motion's."""
+    """Calls and inclusive instructions by callee, for calls from another library into motion."""
     names = {}
 
     def name(word):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Load of a shop: machines that publish by Sparkplug, mosquitto, `millwright shop` and PostgreSQL on this computer. Prints the values
-that are stored per second, the processor time of each part, and two times: from the time of a value to its receipt at the publisher
-(of all messages), and to the moment when a query sees it (one machine, by another connection). The machines run programs and have alarms:
-triggers calculate runs, and each alarm is sent to a webhook. Counts rows, runs and alarms at the end: status 1 when one is missing or there is
-one too many.
+"""Measures the load of a shop: machines that publish by Sparkplug, mosquitto, `millwright shop` and PostgreSQL on this computer.
+Prints the values stored per second, the processor time of each part, and two times: from the time of a value to its receipt at
+the publisher (all messages), and to the first query that returns it (one machine, on another connection). The machines run
+programs and have alarms: triggers calculate runs, and each alarm is sent to a webhook. Counts rows, runs and alarms at the end.
+Exit status 1: one is missing or duplicated.
 
 usage: shop.py [--machines N] [--values N] [--seconds N] [--job SECONDS]
 """
@@ -32,13 +32,13 @@ NEWEST = '''SELECT extract(epoch FROM max(reading.at)) FROM reading JOIN metric 
 
 
 def processor_s(pid):
-    """Of a process and those of its children that have ended."""
+    """Processor time of a process and of its children that have ended."""
     fields = pathlib.Path(f'/proc/{pid}/stat').read_text().rsplit(')', 1)[1].split()
     return sum(int(field) for field in fields[11:15]) / TICKS
 
 
 class Probe(threading.Thread):
-    """Reads the newest time of one machine again and again; each new one gives the time from value to query."""
+    """Queries the newest time of one machine repeatedly. Each new time gives the delay from value to query."""
 
     def __init__(self, database):
         super().__init__(daemon=True)
@@ -67,7 +67,7 @@ def share(numbers, part):
 def measure(words, folder):
     database = Postgres(folder).start('-c', 'fsync=on')
     broker = Broker(folder, free_port())
-    # Without a line for each message.
+    # Does not log each message.
     broker.process = subprocess.Popen(['/usr/sbin/mosquitto', '-c', str(broker.config)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     hook = serve(http.server.ThreadingHTTPServer(('127.0.0.1', 0), Hook))
     hook.bodies = []

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Time of the queries of the shop page with many machines and the jobs of days in the tables. Half of the machines run a program.
+"""Measures the queries of the shop page with many machines and several days of jobs in the tables. Half of the machines run a
+program.
 
 usage: shop_queries.py [--machines N] [--jobs N] [--days N]
 """
@@ -25,7 +26,7 @@ def timed(database, sql):
 
 
 def fill(database, words):
-    """Each job: ACTIVE, feed hold, ACTIVE, Program/Ended, READY. The last one of each second machine has not ended."""
+    """Each job: ACTIVE, feed hold, ACTIVE, Program/Ended, READY. The last job of every second machine has not ended."""
     period_s = 86400 * words.days / words.jobs
     names = ', '.join(f"('{name}')" for name in METRICS)
     days = ''.join(f"DO $$ BEGIN EXECUTE format('CREATE TABLE reading_%s PARTITION OF reading FOR VALUES FROM (%L) TO (%L)', {day}, "

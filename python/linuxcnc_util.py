@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What scripts that drive a machine wait for.
+"""Functions that wait for states of a machine, for scripts that operate it.
 
     import linuxcnc_util
     machine = linuxcnc_util.LinuxCNC()
     machine.wait_for_linuxcnc_startup()
 
-Each wait raises LinuxCNC_Exception when its time is over, with what it has waited for.
+Each wait raises LinuxCNC_Exception with the awaited state if its time expires.
 """
 import time
 
@@ -18,11 +18,11 @@ _STILL_S = 0.05
 
 
 class LinuxCNC_Exception(linuxcnc.error):
-    """What was waited for has not come."""
+    """The awaited state was not reached in time."""
 
 
 class LinuxCNC:
-    """LinuxCNC([command, status, error]): a machine; objects that are not given are made."""
+    """LinuxCNC([command, status, error]): a machine. Objects that are not passed are created."""
 
     def __init__(self, command=None, status=None, error=None):
         self.command = command or linuxcnc.command()
@@ -40,7 +40,7 @@ class LinuxCNC:
             time.sleep(_STEP_S)
 
     def wait_for_linuxcnc_startup(self, timeout=_TIMEOUT_S):
-        """Until the machine is ready, in emergency stop and idle."""
+        """Waits until the machine is ready, in emergency stop and idle."""
 
         def is_ready(status):
             return (status.axis_mask != 0 and status.cycle_time > 0 and status.linear_units > 0
@@ -54,20 +54,20 @@ class LinuxCNC:
             except linuxcnc.error as error:
                 if isinstance(error, LinuxCNC_Exception) or time.monotonic() > end:
                     raise
-                time.sleep(_STEP_S)  # it is not there yet
+                time.sleep(_STEP_S)  # it does not exist yet
 
     def all_joints_homed(self, joints):
-        """Whether each joint whose entry is not 0 is homed."""
+        """True if each joint whose entry is not 0 is homed."""
         self.status.poll()
         return all(self.status.homed[i] for i, wanted in enumerate(joints) if wanted)
 
     def wait_for_home(self, joints, timeout=_TIMEOUT_S):
-        """Until each joint whose entry is not 0 is homed."""
+        """Waits until each joint whose entry is not 0 is homed."""
         self._wait(lambda status: all(status.homed[i] for i, wanted in enumerate(joints) if wanted),
                    f"joints {joints} are homed", timeout)
 
     def wait_for_axis_to_stop(self, axis_letter, timeout=_TIMEOUT_S):
-        """Until the axis has kept its place for a moment."""
+        """Waits until the axis has not moved for a short time."""
         index = _LETTERS.index(axis_letter.lower())
         since = [None, 0.0]
 
@@ -97,9 +97,9 @@ class LinuxCNC:
         self.wait_for_axis_to_stop_at(axis_letter, target, timeout)
 
     def wait_for_interp_state(self, target, timeout=_TIMEOUT_S):
-        """Until the interpreter is in that state (linuxcnc.INTERP_*)."""
+        """Waits until the interpreter is in this state (linuxcnc.INTERP_*)."""
         self._wait(lambda status: status.interp_state == target, f"the interpreter is in state {target}", timeout)
 
     def wait_for_tool_in_spindle(self, expected, timeout=_TIMEOUT_S):
-        """Until that tool is in the spindle."""
+        """Waits until this tool is in the spindle."""
         self._wait(lambda status: status.tool_in_spindle == expected, f"tool {expected} is in the spindle", timeout)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a preview has to run before a program, so that it begins as the machine would."""
+"""Codes that a preview must run before a program, so that it starts in the state of the machine."""
 
 # Positions in stat.gcodes of modes that stay active from one program to the next: plane, compensation (only off),
 # distance, feed mode, coordinate system, tool length, retract, diameter, arc distance. Motion does not belong here.
@@ -26,9 +26,9 @@ def _place(stat):
 
 
 def create_unitcode_and_initcode(stat, ini):
-    """(unitcode, initcode) for gcode.parse: the units of the machine, then, a block each, the modes that are in force on
-    it, which those of [RS274NGC]RS274NGC_STARTUP_CODE are a part of, and the way to where it stands (`stat` as
-    linuxcnc.stat gives them, now). Before the machine has said its modes they are those of the start-up code."""
+    """(unitcode, initcode) for gcode.parse: the machine units, then one block for each mode that is active on the machine
+    (including those of [RS274NGC]RS274NGC_STARTUP_CODE), and the move to its position. `stat` is the current linuxcnc.stat.
+    Before the machine has reported its modes, those of the start-up code are used."""
     if hasattr(stat, "poll"):
         stat.poll()
     unitcode = "G21" if stat.linear_units > _METRIC_FROM else "G20"

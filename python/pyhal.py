@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""HAL components with named enums and ports, over the module hal.
+"""HAL components with named enums and ports, based on the module hal.
 
-    import pyhal
-    c = pyhal.component("writer")
-    port = c.pinNew("port", pyhal.halType.PORT, pyhal.pinDir.OUT)
-    c.ready()
-    if port.waitWritable(3, timeout=1):
-        port.write(b"abc")
+import pyhal
+c = pyhal.component("writer")
+port = c.pinNew("port", pyhal.halType.PORT, pyhal.pinDir.OUT)
+c.ready()
+if port.waitWritable(3, timeout=1):
+    port.write(b"abc")
 """
 import enum
 import time
@@ -33,7 +33,7 @@ class pinDir(enum.IntEnum):
 
 
 class pin:
-    """A pin; `value` reads and sets it. Ports are read and written by bytes."""
+    """A pin; `value` reads and sets it. Ports transfer bytes."""
 
     POLL_S = 0.001
 
@@ -61,7 +61,7 @@ class pin:
         self._item.set(new)
 
     def size(self):
-        """Port: size of the queue; it holds one byte less."""
+        """Port: size of the queue; it can hold one byte less."""
         return self._item.size()
 
     def readable(self):
@@ -77,15 +77,15 @@ class pin:
         return self._item.write(data)
 
     def read(self, count):
-        """Port: takes count bytes; '' when there are fewer."""
+        """Port: removes and returns count bytes; '' if there are fewer."""
         return self._item.read(count) or ''
 
     def peek(self, count):
-        """Port: as read, and leaves the bytes in the queue."""
+        """Port: as read(), but the bytes remain in the queue."""
         return self._item.peek(count) or ''
 
     def peekCommit(self, count):
-        """Port: drops count bytes; False when there are fewer."""
+        """Port: discards count bytes; False if there are fewer."""
         return self._item.peek_commit(count)
 
     def clear(self):
@@ -110,7 +110,7 @@ class pin:
 
 
 class component:
-    """A HAL component; names of its pins begin with the component's."""
+    """A HAL component. The names of its pins begin with the component's name."""
 
     def __init__(self, name):
         self.name = name

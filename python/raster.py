@@ -48,7 +48,7 @@ class RasterProgrammer:
         self.component.ready()
 
     def begin(self, offset, bpp, ppu, count, timeout=None):
-        """The head of a line: distance to the first pixel, bits of a pixel, pixels in a unit, number of pixels."""
+        """The header of a line: distance to the first pixel, bits per pixel, pixels per unit, number of pixels."""
         if bpp not in self.BITS:
             raise ValueError(f"a pixel has one of {self.BITS} bits, not {bpp}")
         if self._missing:
@@ -77,16 +77,16 @@ class RasterProgrammer:
             self._send(text[at:at + self.CHUNK], timeout)
 
     def start(self, timeout=1.0):
-        """The run begins at the position of this moment.
+        """Starts the run at the current position.
 
-        Where the pin `enabled` is linked, waits until raster says that it follows the line; RuntimeError at a fault,
+        If the pin `enabled` is linked, waits until raster reports that it follows the line. Raises RuntimeError at a fault,
         TimeoutError after timeout seconds.
         """
         self.run.value = True
         self._wait_until(True, timeout)
 
     def stop(self, timeout=1.0):
-        """The run ends; the next line is read. Waits as start() does."""
+        """Ends the run; raster then reads the next line. Waits as start() does."""
         self.run.value = False
         self._wait_until(False, timeout)
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Prologs and epilogs for remapped codes: T, M6, M61, S, F and cycles.
 
-In remap.py: `from stdglue import *`. A prolog checks the block and hands values to the procedure as local
-parameters; the procedure may change them and returns a positive number to have them take effect in the epilog.
-When the procedure used the code's own meaning, the epilog adds nothing.
+In remap.py: `from stdglue import *`. A prolog checks the block and passes values to the procedure as local parameters. The
+procedure may change them, and returns a positive number if the epilog should apply them. If the procedure has used the code
+itself, the epilog adds nothing.
 """
 import emccanon
 from interpreter import INTERP_EXECUTE_FINISH, INTERP_OK
@@ -18,7 +18,7 @@ def _block(self):
 
 
 def _refusal(self, name):
-    """The error when a procedure did not return a positive number, else None."""
+    """The error if a procedure did not return a positive number, otherwise None."""
     if self.return_value > 0.0:
         return None
     return f'{name}: aborted (return code {self.return_value:.1f})'
@@ -36,7 +36,7 @@ def _changer_fault(self, name):
 
 
 def _find_tool(self, tool, name):
-    """(place in the tool table, None), or (None, error)."""
+    """(index in the tool table, None), or (None, error)."""
     status, pocket = self.find_tool_pocket(tool)
     if status != INTERP_OK:
         return None, f'{name}: tool {tool} is not in the tool table'
@@ -46,7 +46,7 @@ def _find_tool(self, tool, name):
 # ---------------------------------------------------------------------------------------------- T: prepare
 
 def prepare_prolog(self, **words):
-    """Gives #<tool> and #<pocket> (-1 for T0)."""
+    """Sets #<tool> and #<pocket> (-1 for T0)."""
     block = _block(self)
     if not block.t_flag:
         return 'T requires a tool number'
@@ -74,7 +74,7 @@ def prepare_epilog(self, **words):
 # -------------------------------------------------------------------------------------------- M6: change
 
 def change_prolog(self, **words):
-    """Gives #<tool_in_spindle>, #<selected_tool>, #<current_pocket> and #<selected_pocket>."""
+    """Sets #<tool_in_spindle>, #<selected_tool>, #<current_pocket> and #<selected_pocket>."""
     fault = _changer_fault(self, 'M6')
     if fault:
         return fault
@@ -95,7 +95,7 @@ def change_epilog(self, **words):
         yield error
     if not _block(self).builtin_used:
         pocket = int(self.params['selected_pocket'])
-        if pocket != self.selected_pocket:  # the procedure has chosen another tool
+        if pocket != self.selected_pocket:  # the procedure has selected another tool
             emccanon.SELECT_TOOL(self.tool_table[pocket].toolno if pocket > 0 else 0)
         emccanon.CHANGE_TOOL(pocket)
         self.current_pocket = pocket
@@ -183,12 +183,12 @@ def setfeed_epilog(self, **words):
 # ------------------------------------------------------------------------------------------------- cycles
 
 def init_stdglue(self):
-    """For __init__ of the top-level script; cycles keep their words from block to block."""
+    """For __init__ of the top-level script; cycles keep their words between blocks."""
     self.sticky_params = {}
 
 
 def _cycle_error(self, name, words, sticky):
-    """Why these words make no cycle, or None."""
+    """Why these words are not a valid cycle, or None."""
     if any(letter in words for letter in 'abc'):
         return f'{name}: A, B and C cannot be used in a cycle'
     linear = any(letter in sticky for letter in 'xyz')
@@ -213,14 +213,14 @@ def _cycle_error(self, name, words, sticky):
 
 
 def _sticky_words(self, name):
-    """The words that stay from the last block of this cycle: R and those along the plane's normal."""
+    """The words kept from the last block of this cycle: R and those along the plane's normal."""
     if not hasattr(self, 'sticky_params'):
         init_stdglue(self)
     return self.sticky_params.setdefault(name, {})
 
 
 def cycle_prolog(self, **words):
-    """Gives the words as #<x>, #<y>...; R and the depth stay from block to block of the same cycle."""
+    """Sets the words as #<x>, #<y>...; R and the depth are kept between blocks of the same cycle."""
     remap = _block(self).executing_remap
     sticky = _sticky_words(self, remap.name)
     if self.motion_mode != remap.motion_code:
@@ -239,7 +239,7 @@ def cycle_prolog(self, **words):
 
 
 def cycle_epilog(self, **words):
-    """Makes the code modal: a block with words alone runs it again."""
+    """Makes the code modal: a block with only words runs it again."""
     remap = _block(self).executing_remap
     if remap.motion_code >= 0:
         self.motion_mode = remap.motion_code
@@ -249,7 +249,7 @@ def cycle_epilog(self, **words):
 # --------------------------------------------------------------------------------------------------- lathes
 
 def index_lathe_tool_with_wear(self, **words):
-    """REMAP=T python=index_lathe_tool_with_wear: T201 takes tool 2 and adds the wear offset of entry 10001."""
+    """REMAP=T python=index_lathe_tool_with_wear: T201 selects tool 2 and adds the wear offset of entry 10001."""
     block = _block(self)
     if not block.t_flag:
         yield 'T requires a tool number'
@@ -277,7 +277,7 @@ def index_lathe_tool_with_wear(self, **words):
 
 
 def ignore_m6(self, **words):
-    """REMAP=M6 python=ignore_m6: lathes change tools with T alone."""
+    """REMAP=M6 python=ignore_m6: lathes change tools with T only."""
     if self.current_tool == 0:
         return 'M6: there is no tool in the spindle; T changes it'
     return INTERP_OK

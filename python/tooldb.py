@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The other side of [EMCIO]DB_PROGRAM: a program that keeps the tools of a machine.
+"""The interface for [EMCIO]DB_PROGRAM: a program that stores the tools of a machine.
 
-    tooldb_tools([10, 11, 12])            # the tools that there are
+    tooldb_tools([10, 11, 12])            # the existing tools
     tooldb_callbacks(get, put, load, unload)
     tooldb_loop()                         # until the machine ends
 
-get(number) returns the line of a tool as a tool table has it; put, load and unload get a tool's number and the
-line that says what has changed. An exception in any of them refuses the command, with its text.
+get(number) returns the line of a tool in the format of a tool table. put, load and unload receive a tool's number and a line with
+the changes. If one of them raises an exception, the command is rejected with its text.
 """
 import sys
 
@@ -17,12 +17,12 @@ _callbacks = {}
 
 
 def tooldb_tools(numbers):
-    """The numbers of all tools; may be called again when tools come or go."""
+    """The numbers of all tools; may be called again when tools are added or removed."""
     _tools[:] = list(numbers)
 
 
 def tooldb_callbacks(get, put, load, unload):
-    """What is called for each command of the machine."""
+    """Functions that are called for the commands of the machine."""
     _callbacks.update(g=get, p=put, l=load, u=unload)
 
 
@@ -38,7 +38,7 @@ def _tell_tools():
 
 
 def _tell_change(letter, words):
-    """`words`: a line of a tool table, whole or its T and P alone."""
+    """`words`: a line of a tool table, complete or only its T and P."""
     line = words.upper()
     first = line.split()[0] if line.split() else ''
     if not first.startswith('T'):

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Programs as CAM systems post them, seeded: mills with 3 to 5 axes, lathes without Y, lasers without Z.
+"""Random programs as CAM systems post them: mills with 3 to 5 axes, lathes without Y, lasers without Z.
 
-make(seed) gives a Program: its text, the letters of the machine's axes and whether its machine counts in inches. What posts
-differ in is drawn once per program: arc ends rounded to 3 or 4 decimals, incremental or absolute centres or radii, modal or
-full words, line numbers, comments, `%`, spaces, leading zeros. The numbers of an arc are rounded one by one, as posts do.
+make(seed) returns a Program: its text, the letters of the machine's axes, and whether the machine unit is the inch. The
+differences between posts are drawn once per program: arc ends rounded to 3 or 4 decimals, incremental or absolute centres or
+radii, modal or full words, line numbers, comments, `%`, spaces, leading zeros. The numbers of an arc are rounded separately, as
+posts do.
 """
 import math
 import random

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Checks that no class has over 40 member functions or 30 data members; those of nested classes count for the outer one.
+"""Checks that no class has more than 40 member functions or 30 data members; those of nested classes count for the outer class.
 
-usage: check_classes.py ROOT [--list N]; exit status 1 lists what is too large. --list: the N largest of all.
-Constructors count, what is `= default` or `= delete` and constants (static constexpr) do not.
+usage: check_classes.py ROOT [--list N]; exit status 1 lists classes that are too large. --list: the N largest classes.
+Constructors count. `= default`, `= delete` and constants (static constexpr) do not.
 """
 import argparse
 import pathlib

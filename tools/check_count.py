@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The number of components that the README names is that of the tree. usage: check_count.py README COUNT"""
+"""Checks that the README states the number of components in the tree. usage: check_count.py README COUNT"""
 import pathlib
 import re
 import sys

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Checks that includes point downwards only. usage: check_layers.py ROOT; exit status 1 lists what does not."""
+"""Checks that includes point only to lower layers. usage: check_layers.py ROOT; exit status 1 lists the others."""
 import pathlib
 import re
 import sys
 
-# Each room, and the rooms or folders of a room that it may use.
+# Each layer, and the layers or folders of a layer that it may use.
 MAY_USE = {
     'base': (),
     'runtime': ('base',),
@@ -22,8 +22,7 @@ MAY_USE = {
     'components': ('base', 'hal', 'kinematics', 'trajectory', 'motion', 'machine/io'),
     'tests/support': ('base', 'hal', 'kinematics', 'trajectory', 'motion'),
 }
-# The folders of a room in the order in which they may use each other. '' means the files outside its
-# folders.
+# The order in which the folders of a layer may use each other. '' means files outside its folders.
 ORDER = {
     'base': ('', 'diagnostics', 'geometry', 'language', 'options', 'ini', 'charts'),
     'messages': ('declarations', 'legacy', 'mailbox', 'client'),
@@ -42,7 +41,7 @@ ORDER = {
     'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'board', 'virtual', 'hm2_eth', 'pci', 'epp', 'spi'),
     'programs': ('setup', 'run', 'remote', 'publish', 'shop', 'start', 'screen', 'doctor', 'commission', 'mains'),
 }
-# Uses that are forbidden for a folder although its room has them.
+# Uses that are forbidden for a folder although its layer permits them.
 NEVER = {
     'motion/homing': ('hal', 'kinematics', 'trajectory'),
     'motion/interface': ('hal',),
@@ -78,7 +77,7 @@ def room_of(path):
 
 
 def rank(path, room):
-    """The position of a file in the order of its room's folders; None if the order does not include it."""
+    """The position of a file in the order of its layer's folders; None if the order does not include it."""
     rest = path[len(room) + 1:].split('/')
     folder = rest[0] if len(rest) > 1 else ''
     order = ORDER[room]
@@ -95,7 +94,7 @@ def problem_of_order(source, target):
 
 
 def are_parts_mixed(source, target):
-    """Parts of the motion controller are separate folders that do not include each other."""
+    """True if both are in parts (folders) of the motion controller, and in different ones; parts must not include each other."""
     parts = [path.split('/') for path in (source, target)]
     are_parts = all(len(part) > 3 and part[:2] == ['motion', 'servo'] for part in parts)
     return are_parts and parts[0][2] != parts[1][2]

@@ -60,7 +60,7 @@ class Tree:
         self.files = [name for name in listed.stdout.splitlines() if (root / name).is_file()]
         self.names = set(self.files) | {'docs/' + name for name in GENERATED}
         self.folders = {str(parent) for name in self.names for parent in pathlib.PurePath(name).parents}
-        # A class is named by its header without the suffix.
+        # A class is referred to by its header without the suffix.
         self.stems = {os.path.splitext(name)[0] for name in self.names}
         self.anchors = {}
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Keeps the column "tests" of docs/developer/requirements.md: which test programs cover each row.
+"""Maintains the column "tests" of docs/developer/requirements.md: the test programs that cover each row.
 
 usage: check_requirements.py ROOT [--write]
-A test names its rows in CMake: mw_test(NAME ... ROWS C10 ...) or, where it is no GoogleTest program, a label (row-C10). The exit
-status is 1 where a test names a row that is not there, where the column is not up to date (--write puts it right), and where a row has
-neither a test nor a word why under "state".
+A test names its rows in CMake: mw_test(NAME ... ROWS C10 ...) or, if it is not a GoogleTest program, a label (row-C10). Exit
+status 1: a test names a row that does not exist, the column is outdated (--write corrects it), or a row has neither a test nor a
+reason under "state".
 """
 import collections
 import pathlib

@@ -24,7 +24,7 @@ def strip(line):
 
 
 def long_functions(text):
-    """Yields (first line, length) of bodies that open at a line ending in '{' with ')' before it, outside bodies."""
+    """Yields (first line, length) of bodies that open on a line ending in '{' with ')' before it, outside other bodies."""
     stack = []
     for number, raw in enumerate(text.splitlines(), 1):
         line = strip(raw)

@@ -5,7 +5,7 @@
 usage: check_subjects.py ROOT            the commits since the one that added this file, without merges
        check_subjects.py --message FILE  the message in FILE: a commit-msg hook of Git
        check_subjects.py --self-test     subjects with and without faults
-The exit status is 1 where a subject breaks a rule, 77 where the checkout has no history.
+Exit status 1: a subject breaks a rule; 77: the checkout has no history.
 """
 import pathlib
 import re
@@ -15,12 +15,12 @@ import sys
 LONGEST = 72
 SKIPPED = 77
 SELF = 'tools/check_subjects.py'
-# First words with the ending of another form that are imperatives.
+# First words that are imperatives although they have the ending of another form.
 IMPERATIVES = {'feed', 'embed', 'need', 'speed', 'seed', 'shed', 'proceed', 'exceed', 'bring', 'ring', 'string', 'pass', 'bypass', 'press', 'process',
                'address', 'express', 'compress', 'suppress', 'access', 'cross', 'guess', 'miss', 'discuss', 'focus', 'bias'}
 NO_VERBS = {'the', 'a', 'an', 'one', 'two', 'all', 'some', 'no', 'not', 'who', 'what', 'where', 'when', 'why', 'how', 'without', 'with', 'if',
             'in', 'on', 'at', 'of', 'from', 'to', 'for', 'by', 'as', 'now', 'nobody', 'documents', 'more', 'new', 'better', 'this', 'it', 'its', 'we'}
-# Verbs that are no nouns, so that ", and VERB" is a second intent.
+# Verbs that are not nouns, so that ", and VERB" is a second intent.
 SECOND_VERBS = 'add|remove|delete|correct|describe|rename|rewrite|replace|reject|allow|keep|give|make|read|write|install|load|explain|judge|let|use|fix'
 RULES = (
     (re.compile(r'^[^A-Z]'), 'begins with a capital letter'),

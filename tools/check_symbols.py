@@ -3,9 +3,9 @@
 """Checks that realtime code calls nothing that allocates, locks, blocks or throws.
 
 usage: check_symbols.py ALLOWED FILE...
-ALLOWED lists the undefined symbols that realtime archives and components may have, one glob a line ('#' comments);
-'NAME.so: glob' allows it to that file only. What another of the FILEs defines is allowed too. Exit status 1 lists the
-others with the object that wants them.
+ALLOWED lists the undefined symbols that realtime archives and components may have, one glob per line ('#' comments); 'NAME.so:
+glob' permits it for that file only. Symbols that another FILE defines are permitted. Exit status 1 lists the others with the
+object that needs them.
 """
 import fnmatch
 import pathlib
@@ -46,7 +46,7 @@ def main():
     defined, wanted = set(), {}
     for name in sys.argv[2:]:
         for member, kind, symbol in symbols_of(pathlib.Path(name)):
-            # Weak undefined symbols (w, v) may remain undefined; a caller links them.
+            # Weak undefined symbols (w, v) may remain undefined, because the caller links them.
             if kind in 'Uwv' and any(fnmatch.fnmatchcase(symbol, one) for one in of_file.get(member.split(':')[0], ())):
                 continue
             if kind in 'Uwv':

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Checks that no visitor over a closed variant has a default. usage: check_visitors.py ROOT; exit status 1 lists them.
 
-Among several overloads one for `auto` takes in silence what is added to the variant later. A single generic lambda, which
-does the same to all, and a constrained one (`const OneOf<A, B> auto &`) are fine.
+An overload for `auto` among other overloads silently accepts alternatives that are added to the variant later. A single generic
+lambda, which treats all alternatives equally, and a constrained one (`const OneOf<A, B> auto &`) are permitted.
 """
 import pathlib
 import re

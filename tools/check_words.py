@@ -3,10 +3,10 @@
 """Counts phrases that are not plain English in all prose: pages, comments, messages, texts of the screen.
 
 usage: check_words.py ROOT [--by-file] [--show N] [--write]
-tools/words.txt has the phrases and the highest number of places. The exit status is 1 where the tree has more places than that, or
-50 fewer (--write puts the number right: it may only fall).
-  --by-file  the files with the most places
-  --show N   N random places with their phrase
+tools/words.txt contains the phrases and the maximum number of occurrences. Exit status 1: the tree has more occurrences, or 50
+fewer (--write corrects the number, which may only decrease).
+  --by-file  the files with the most occurrences
+  --show N   N random occurrences with their phrase
 """
 import collections
 import pathlib

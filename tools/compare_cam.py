@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs CAM-style programs (cam_programs.py) through LinuxCNC's rs274 and ours and compares where every move ends.
+"""Runs CAM-style programs (cam_programs.py) with LinuxCNC's rs274 and ours and compares the ends of all moves.
 
-Moves are compared in order: kind, end point, and of arcs the centre and the direction; the last printed digit may differ by
-one. A program that either refuses counts as different. With --run N, the first N programs also run in virtual time on
-machines of their own axes (tests/e2e/cam_runs.py), which needs no LinuxCNC. Exit status 1 when anything differs.
+Moves are compared in order: type, end point, and for arcs the centre and the direction; the last printed digit may differ by one.
+A program that either side rejects counts as different. With --run N, the first N programs also run in virtual time on machines
+with their axes (tests/e2e/cam_runs.py), which does not need LinuxCNC. Exit status 1: something differs.
 """
 import argparse
 import collections

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares our components with those of LinuxCNC: what they export, and what they do.
+"""Compares our components with those of LinuxCNC: their exports and their behaviour.
 
-Names: pins, parameters and functions with type, direction and start value, for every module that both have; our
-names by the rules count as the legacy names they stand for. Behaviour: streamer -> component -> sampler, one row of
-inputs in each period, so that both see the same inputs in the same periods. LinuxCNC's halrun runs as an ordinary
-user in namespaces of its own.
+Names: pins, parameters and functions with type, direction and start value, for every module that both have; our names by the
+rules count as the legacy names that they replace. Behaviour: streamer -> component -> sampler, one row of inputs per period, so
+that both get the same inputs in the same periods. LinuxCNC's halrun runs as an ordinary user in separate namespaces.
 """
 import argparse
 import os
@@ -57,7 +56,7 @@ class Side:
         return done.stdout
 
     def exports(self, load):
-        """{name: description}; names are those of LinuxCNC where ours have them as second names."""
+        """{name: description}; names are LinuxCNC's if ours have them as second names."""
         out = self.run(f"loadrt {load}\nshow pin\nshow param\nshow funct\nshow alias\n")
         found, legacy = {}, {}
         for line in out.splitlines():

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs the simulator configurations of an installed LinuxCNC under `millwright run`, in virtual time, and counts.
+"""Runs the simulator configurations of an installed LinuxCNC with `millwright run`, in virtual time, and counts the results.
 
 usage: compare_configs.py [--bin DIR] [--configs DIR] [--hallib DIR] [--only TEXT] [--timeout S] [--out FILE] [--start [--work]]
 
-Each configuration is run in a temporary copy of the whole folder, with a small program for its axes: every axis is
-moved a little within its limits. What is counted as run: the program came to its end with status 0.
-With --start: brought up by `linuxcnc -r` with a script as the display, which switches the machine on and ends it;
-configurations without an [EMC] section are parts of others and are left out. --work besides homes, runs a line of MDI and
-the small program where joints are axes.
-Nothing of that installation is started; its folder of HAL files is named once, in MILLWRIGHT_HALLIB.
+Each configuration runs in a temporary copy of the whole folder, with a small program for its axes: every axis moves slightly
+within its limits. A configuration passes if the program ends with status 0.
+With --start it is started by `linuxcnc -r` with a script as the display, which switches the machine on and ends it;
+configurations without an [EMC] section are parts of others and are omitted. --work also homes, and runs a line of MDI and the
+small program if joints are axes.
+Nothing of that installation is started; MILLWRIGHT_HALLIB names its folder of HAL files.
 """
 import argparse
 import collections
@@ -133,7 +133,7 @@ def run(options, ini, folder, place):
         return reason_of(text, status)
 
 
-#: Exit status of WORK where joints are not axes.
+# : Exit status of WORK if joints are not axes.
 NOT_IDENTITY = 3
 
 SCREEN = """#!/usr/bin/env python3
@@ -150,7 +150,8 @@ if s.task_state != linuxcnc.STATE_ON:
 """
 
 
-#: With --work, behind SCREEN: homes, runs a line of MDI and a program, and looks whether it is back where it began.
+# : With --work, appended to SCREEN: homes, runs a line of MDI and a program, and checks whether it has returned to its
+# start.
 WORK = """
 def fail(text):
     while True:

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the drawing functions of the Python module linuxcnc send to OpenGL, here and in an installed LinuxCNC.
+"""Compares the output of the drawing functions of the Python module linuxcnc to OpenGL, here and in an installed LinuxCNC.
 
 usage: compare_drawing.py [--modules DIR]
 
-Each draws into the feedback buffer of a context of Mesa without a window; the lines that arrive are compared. Rotations
-are left out: docs/reference/compatibility.md tells how they differ.
+Each draws into the feedback buffer of a Mesa context without a window; the received lines are compared. Rotations are omitted:
+docs/reference/compatibility.md describes the differences.
 """
 import argparse
 import ctypes

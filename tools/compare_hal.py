@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs seeded HAL files on LinuxCNC and on ours and compares every output of every component in every period.
+"""Runs random HAL files on LinuxCNC and on ours and compares every output of every component in every period.
 
-Streamers feed the components and samplers record them. Linked components run once for each order of their functions.
-LinuxCNC's halrun runs as an ordinary user in namespaces of its own, ours as an instance of its own.
-Intended differences are listed in tools/hal_differences.py, each with its row in docs/reference/compatibility.md; anything else
-makes the exit status 1.
+Streamers feed the components and samplers record them. Linked components run once for each order of their functions. LinuxCNC's
+halrun runs as an ordinary user in separate namespaces, ours as a separate instance. Intended differences are listed in
+tools/hal_differences.py, each with its row in docs/reference/compatibility.md. Exit status 1: other differences.
 """
 import argparse
 import collections
@@ -28,7 +27,7 @@ from hal_files import HalFile, ROWS
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REFERENCE = '/usr/bin/halrun'
 TIMEOUT_S = 60
-UNBOUNDED = 1e9  # a loop of linked components whose values have become so large shows only rounding
+UNBOUNDED = 1e9  # if values in a loop of linked components become this large, only rounding would be compared
 ISOLATED = ['unshare', '--ipc', '--net', '--pid', '--mount', '--fork', '--kill-child', '--mount-proc', 'bash', '-c']
 DIRECTIONS = ('IN', 'OUT', 'I/O', 'RO', 'RW')
 

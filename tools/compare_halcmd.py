@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs the same HAL commands through LinuxCNC's halrun and ours, and compares answers, failing lines and status.
+"""Runs the same HAL commands with LinuxCNC's halrun and ours, and compares answers, failing lines and status.
 
-Fixed sequences go through every command; random ones (seeded) mix good and bad calls. Not compared: widths of
-columns (the versions of LinuxCNC differ), addresses, process ids, ids of components, the component of halcmd itself
-(ours has none), texts of messages (ours say more), and what DIFFERENCES lists.
+Fixed sequences cover every command; random ones mix valid and invalid calls. Not compared: column widths (they differ between
+versions of LinuxCNC), addresses, process ids, ids of components, the component of halcmd (ours has none), texts of messages (ours
+are longer), and the lines listed in DIFFERENCES.
 """
 import argparse
 import difflib
@@ -465,8 +465,8 @@ def random_line(rng):
     kind = rng.choice(['bit', 'float', 's32', 'u32'])
     thread = rng.choice(['fast', 'slow', 'slow', 'nothread'])
     return rng.choice([
-        # One pin each, because a net line that fails changes nothing here but leaves its first pins linked
-        # there.
+        # One pin per line, because a net line that fails changes nothing here, but in LinuxCNC leaves its first pins
+        # linked.
         f'net {signal} {arrow}{name}', f'net {signal} {arrow}{name}', f'net {signal} {name}', f'net {signal} {name}',
         f'newsig {signal} {kind}', f'delsig {signal}', f'unlinkp {name}', f'linkps {name} {arrow}{signal}',
         f'linksp {signal} {arrow}{name}', f'setp {name} {value}', f'setp {param} {value}', f'sets {signal} {value}',

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compiles and loads the components that stand as examples in an installed LinuxCNC's HAL manual.
+"""Compiles and loads the example components of an installed LinuxCNC's HAL manual.
 
-The examples are read from the PDF of its documentation package into a temporary folder, compiled as they are with our
-halcompile, and loaded with our halrun. usage: compare_halcompile.py [--bin FOLDER] [--manual PDF] [--keep]
+The examples are read from the PDF of its documentation package into a temporary folder, compiled unmodified with our halcompile,
+and loaded with our halrun. usage: compare_halcompile.py [--bin FOLDER] [--manual PDF] [--keep]
 """
 import argparse
 import os

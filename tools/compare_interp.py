@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs generated programs through LinuxCNC's rs274 and ours and compares canon calls and whether they fail.
+"""Runs generated programs with LinuxCNC's rs274 and ours and compares canon calls and failures.
 
-The last printed digit of a number may differ by one, and -0 is 0. Texts of messages are not compared, nor what a failing
-block has done before it failed. Differences that are meant are recognised (interp_differences.py), counted by their kind
-and explained in docs/reference/compatibility.md; any other is listed and makes the exit status 1.
+The last printed digit of a number may differ by one, and -0 equals 0. Not compared: texts of messages, and actions of a failing
+block before it failed. Intended differences are recognised (interp_differences.py), counted by class and explained in
+docs/reference/compatibility.md. Exit status 1: other differences, which are listed.
 """
 import argparse
 import collections

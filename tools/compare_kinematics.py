@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares our modules of kinematics with those of LinuxCNC: their pins, and where joints and poses lead.
+"""Compares our kinematics modules with those of LinuxCNC: their pins, and their forward and inverse kinematics.
 
-Every module is loaded as it is, in a process of its own and by an ordinary user, over a HAL that keeps pins and does
-nothing else (kinematics_stub.c); then its pins are set and its functions called as kinematics.h has them. Drawn joints
-go through forward and back (of closed loops: drawn poses through inverse and back). Ours is asked beside LinuxCNC's
-joints, as it takes the side of elbows and knees from where the machine stands. An answer of LinuxCNC that its own forward
-side does not lead back to the pose is no solution: counted, not compared.
+Each module is loaded unmodified in a separate process by an ordinary user, with a HAL that only stores pins (kinematics_stub.c).
+Then its pins are set and its functions called as declared in kinematics.h. Random joints are converted forward and back (for
+closed loops: random poses inverse and back). Ours starts at LinuxCNC's joints, because the current joints select the
+configuration of elbows and knees. A result of LinuxCNC that its own forward kinematics does not convert back to the pose is not a
+solution: it is counted but not compared.
 """
 import argparse
 import ctypes
@@ -204,7 +204,7 @@ def compare(name, model, options, task):
     if isinstance(theirs, str):
         print(f"{name}: LinuxCNC's did not run: {theirs}")
         return 1
-    # Next to LinuxCNC's joints; if it has none, next to the random ones.
+    # Starts at LinuxCNC's joints; if it has none, at the random ones.
     asked = [[call[0], call[1], call[2], their["back"][1] if their["back"][0] else call[3]]
              for call, their in zip(calls, theirs["calls"])]
     asked = [[*call[:3], [x if x == x else 0.0 for x in call[3]]] for call in asked]

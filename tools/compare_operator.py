@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares what operators see on this build and on an installed LinuxCNC 2.9, as black boxes: the same seeded sessions on both.
+"""Compares the behaviour for operators of this build and of an installed LinuxCNC 2.9, as black boxes: the same random sessions
+on both.
 
 usage: compare_operator.py [--prefix DIR] [--user NAME] [--machine NAME] [--first N] [--count N] [--each N] [--jobs N]
                            [--cache DIR] [--acts JSON] [--show]
 
-Simulated machines (MACHINES) are started by both, each in namespaces of its own, with operator_session.py as their display. It
-sends commands by Python, halui and linuxcncrsh, and writes the status after each act. Fields that differ must be in
-operator_differences.INTENDED, whose texts are rows of docs/reference/compatibility.md; anything else is a failure. Seeds are spread over the machines; --each: sessions
-in one start of a machine; --cache keeps LinuxCNC's side. Needs root and the user NAME (default cnc).
+Both start simulated machines (MACHINES) in separate namespaces, with operator_session.py as their display. It sends commands by
+Python, halui and linuxcncrsh, and writes the status after each act. Fields that differ must be in operator_differences.INTENDED,
+whose texts are rows of docs/reference/compatibility.md; other differences are failures. Seeds are distributed over the machines;
+--each: sessions per start of a machine; --cache stores LinuxCNC's results. Needs root and the user NAME (default cnc).
 """
 import argparse
 import collections

@@ -4,9 +4,9 @@
 
 usage: compare_pins.py [--bin DIR] [--timeout S]
 
-One configuration of three joints is brought up by both, with a display that only lists what HAL has. A pin of the reference
-that ours lacks, or has with another type or direction, has a reason in REASONS below, or is a failure. An underscore and a
-hyphen are the same, as in our HAL. Run as root the reference runs as nobody, apart from whatever else runs.
+Both start a configuration of three joints, with a display that only lists HAL. A pin of LinuxCNC that ours lacks, or has with
+another type or direction, must have a reason in REASONS below. An underscore and a hyphen are equal, as in our HAL. If run as
+root, LinuxCNC runs as nobody in separate namespaces.
 """
 import argparse
 import os

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Compares our plasmac with that of an installed LinuxCNC, cycle by cycle, over random histories.
 
-Our core cuts on a simulated table (plasmac_history) and writes down every input of every cycle. The same inputs
-go into the peer's plasmac, loaded by its own halrun, through streamer; sampler writes down its outputs. The first
-cycle in which each output differs is told. Needs root for separate IPC name spaces (unshare), and the peer.
+Our core cuts on a simulated table (plasmac_history) and records every input of every cycle. The same inputs are sent by streamer
+to LinuxCNC's plasmac in its halrun; sampler records its outputs. Prints the first cycle in which each output differs. Needs root
+for separate IPC namespaces (unshare), and LinuxCNC.
 
 usage: script/compare plasmac [--build FOLDER] [--jobs N] FIRST_SEED LAST_SEED
 """
@@ -116,7 +116,7 @@ def history(seed):
 
 
 def pins_of_peer(folder):
-    """(name, type) of the inputs and of the outputs of the peer's plasmac, in the order of their names."""
+    """(name, type) of the inputs and of the outputs of LinuxCNC's plasmac, sorted by name."""
     (folder / 'show.hal').write_text('loadrt plasmac\nshow pin plasmac\n')
     text = run_peer(folder, 'show.hal')
     pins = re.findall(r'^\s*\d+\s+(float|bit|s32)\s+(IN|OUT)\s+\S+\s+plasmac\.(\S+)', text, re.MULTILINE)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs remap programs (G-code and Python handlers of our own) through LinuxCNC's rs274 and ours and compares what they print,
-and whether they fail.
+"""Runs remap programs (G-code and Python handlers of our own) with LinuxCNC's rs274 and ours and compares their output and
+failures.
 
-Texts of errors are not compared. Differences that are meant are in MEANT below and in docs/reference/compatibility.md; any other makes
-the exit status 1. LinuxCNC refuses root: it runs as the user nobody.
+Texts of errors are not compared. Intended differences are in MEANT below and in docs/reference/compatibility.md. Exit status 1:
+other differences. LinuxCNC rejects root, so it runs as the user nobody.
 """
 import argparse
 import os

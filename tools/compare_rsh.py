@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares linuxcncrsh with that of an installed LinuxCNC 2.9, as black boxes: the same lines, what comes back.
+"""Compares the answers of linuxcncrsh with those of an installed LinuxCNC 2.9, as black boxes.
 
 usage: compare_rsh.py [--bin DIR] [--user NAME] [--show]
 
-One machine of three joints is brought up by both, with linuxcncrsh as its display (ours with --dialect 2.9). Each line is sent
-once the one before it has been answered. Answers are compared with their line ends. A line that differs has a reason in
-REASONS below, or is a failure. Run as root the reference runs as NAME (op), apart from whatever else runs.
+Both start a machine of three joints, with linuxcncrsh as its display (ours with --dialect 2.9). Each line is sent after the
+answer to the previous line. Answers are compared including their line ends. A line that differs must have a reason in REASONS
+below. If run as root, LinuxCNC runs as NAME (op) in separate namespaces.
 """
 import argparse
 import os
@@ -136,7 +136,7 @@ def connect(process):
 def talk(process):
     """(line, answer) of each line."""
     connection = connect(process)
-    time.sleep(1)  # it listens before it answers
+    time.sleep(1)  # it listens before it can answer
     told = []
     for line in lines():
         if re.fullmatch(r'[0-9.]+', line):

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Measures start and status of our launcher beside those of an installed LinuxCNC, in turn, on one configuration.
+"""Measures start and status of our launcher and of an installed LinuxCNC, alternately, with one configuration.
 
 usage: compare_start.py [--bin DIR] [--config INI] [--runs N] [--user NAME]
 
-Start: from the launcher's exec to the end of the first command of a script that is the display (reset of the emergency stop). stat.poll():
-the mean of 5000 calls while the machine stands. Each run is in namespaces of its own (pid, mount, IPC, network), as an ordinary user; needs
-root for these. Figures depend on what else the computer does: both are run in turn, and the median counts.
+Start: from the launcher's exec to the end of the first command of a script that is the display (reset of the emergency stop).
+stat.poll(): mean of 5000 calls while the machine is stopped. Each run has separate namespaces (pid, mount, IPC, network) and an
+ordinary user; this needs root. Figures depend on the load of the computer, so both run alternately and the median counts.
 """
 import argparse
 import json

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares every attribute of linuxcnc.stat on this build and on an installed LinuxCNC 2.9, in ten states of a simulated mill.
+"""Compares every attribute of linuxcnc.stat of this build and of an installed LinuxCNC 2.9, in ten states of a simulated mill.
 
 usage: compare_stat.py [--prefix DIR] [--user NAME] [--table]
 
-Attributes that differ must be rows of "linuxcnc.stat, field by field" in docs/reference/compatibility.md; anything else is a failure.
---table prints those rows. TIMED attributes depend on the instant, and are compared by their type alone. Needs root.
+Attributes that differ must be rows of "linuxcnc.stat, field by field" in docs/reference/compatibility.md; other differences are
+failures. --table prints those rows. TIMED attributes depend on the time; only their types are compared. Needs root.
 """
 import argparse
 import json

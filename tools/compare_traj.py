@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares our trajectories with those of an installed LinuxCNC on the same G-code, limits and P.
+"""Compares our trajectories with those of an installed LinuxCNC with the same G-code, limits and P.
 
-The twelve kinds of programs of bench/traj run through both whole systems: ours by `millwright run --trace` in virtual
-time, LinuxCNC without a screen, by its clock, its joint positions taken in every servo cycle by its own `sampler`
-(it runs as an ordinary user in namespaces of its own). tools/trajcheck.py judges both. Run it on a quiet machine: the
-reference's task feeds its planner by the clock. usage: script/compare traj [--only WORD] [--repeat N] [--keep FOLDER]
+The twelve types of programs of bench/traj run on both complete systems: ours with `millwright run --trace` in virtual time,
+LinuxCNC without a screen in real time, with its `sampler` recording its joint positions in every servo cycle (as an ordinary user
+in separate namespaces). tools/trajcheck.py judges both. Run it on an idle computer, because LinuxCNC's task feeds its planner in
+real time. usage: script/compare traj [--only WORD] [--repeat N] [--keep FOLDER]
 """
 import argparse
 import json

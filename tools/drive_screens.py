@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs the unmodified screens of an installed LinuxCNC with Millwright. Each screen is started under Xvfb with a sample
+"""Runs unmodified screens of an installed LinuxCNC with Millwright. Each screen is started under Xvfb with a sample
 configuration, and a second client homes, runs and aborts programs and checks the result. The tests do not use this program.
 
 usage: script/screens --check [SCREEN ...] [--pictures DIR]
@@ -128,7 +128,7 @@ def keys(*names):
 
 
 def drive_axis(machine, place):
-    """The actions of a person with the keyboard of AXIS."""
+    """The actions of a person at the keyboard of AXIS."""
     lc, see = machine.lc, machine.see
     program = str(place / "keys.ngc")
     pathlib.Path(program).write_text(PROGRAM)

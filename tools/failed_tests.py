@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Prints why tests failed, from the logs of ctest: for each failed test its name and the lines that give the reason.
+"""Prints why tests failed, from the logs of ctest: for each failed test its name and the lines with the reason.
 
-usage: failed_tests.py FOLDER         FOLDER: Testing/Temporary of a build folder; prints nothing where no test failed
+usage: failed_tests.py FOLDER         FOLDER: Testing/Temporary of a build folder; prints nothing if no test failed
        failed_tests.py --self-test    runs ctest with tests that fail
-The reason: of vitest each FAIL line with message and position, of GoogleTest each failed assertion, else the end of the output.
+The reason: for vitest each FAIL line with message and position, for GoogleTest each failed assertion, otherwise the end of the
+output.
 """
 import pathlib
 import re

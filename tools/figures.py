@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Draws the figures of docs/developer/architecture.md: the layers (from the table of check_layers.py), the processes, and one move.
+"""Draws the figures of docs/developer/architecture.md: the layers (from the table of check_layers.py), the processes, and one
+move.
 
 usage: figures.py ROOT           writes docs/figures/*.svg (needs dot of graphviz)
-       figures.py ROOT --check   exit status 1: a figure is older than its source, or a name in it is not in the file that it names
+       figures.py ROOT --check   exit status 1: a figure is older than its source, or its file does not contain a name in it
 """
 import hashlib
 import pathlib
@@ -28,7 +29,7 @@ MOVE = (
     ('joint.N.motor-pos-cmd', 'motion/hal/pin_tables.hh', 'HAL pin'),
 )
 
-# Processes: name, what runs in it, folders of src or of the tree that must exist.
+# Processes: name, its contents, folders of src or of the tree that must exist.
 PROCESSES = (
     ('start', 'millwright start: task\\ninterpreter, sequencer, I/O controller,\\nhalui, HAL files', ('src/machine/task', 'src/machine/assembly')),
     ('rt', 'millwright-rt: realtime\\nHAL threads, motion controller,\\nplanner, drivers', ('src/hal/host', 'src/motion/hal')),

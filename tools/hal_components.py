@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The components that compare_hal.py runs, and the inputs and parameters that are in their range.
+"""The components that compare_hal.py runs, and valid inputs and parameters.
 
-Only what differs from the defaults is listed: a bit changes now and then, a float is uniform, whole or a random walk.
+Only differences from the defaults are listed: a bit changes occasionally, a float is uniform, whole or a random walk.
 """
 import dataclasses
 import re
@@ -106,7 +106,7 @@ class Component:
     loads: list = dataclasses.field(default_factory=list)
     values: dict = dataclasses.field(default_factory=dict)  # {regular expression over a pin or parameter: generator}
     skip: str = ''    # inputs and parameters that keep their value
-    hide: str = ''    # outputs that are not compared, because they show times of the computer
+    hide: str = ''    # outputs that are not compared, because they contain times
     ordered: bool = False  # functions in the order of their names, backwards
     single: bool = False  # one instance and functions of the module
     count: str = 'count'

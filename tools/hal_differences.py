@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Differences from LinuxCNC's components that are intended, for compare_hal.py.
+"""Intended differences from LinuxCNC's components, for compare_hal.py.
 
-Each entry names the pins that may differ and the row of docs/reference/compatibility.md that explains it. `avoid` has inputs or
-parameters with which the difference does not occur: most files use them, and then the entry does not count.
+Each entry names the pins that may differ and the row of docs/reference/compatibility.md that explains it. `avoid` contains inputs
+or parameters with which the difference does not occur: most files use them, and then the entry does not apply.
 """
 import dataclasses
 import re

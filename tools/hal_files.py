@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Seeded HAL files for compare_hal.py: streamers feed components, samplers record every output of every period.
+"""Random HAL files for compare_hal.py: streamers feed components, samplers record every output in every period.
 
-A file has a group of components that are linked with each other, once for each order of their functions (addf), and
-some single components beside it. What a component exports is discovered, not listed.
+A file has a group of components that are linked to each other, once for each order of their functions (addf), and some separate
+components. The exports of components are discovered, not listed.
 """
 import dataclasses
 import itertools
@@ -25,7 +25,7 @@ class Instance:
     prefix: str
     exports: dict
     functions: list
-    avoided: set = dataclasses.field(default_factory=set)  # differences that do not count in this file
+    avoided: set = dataclasses.field(default_factory=set)  # differences that do not apply to this file
 
     def pins(self, direction):
         return [pin for pin, what in self.exports.items() if what[0] in LETTERS and what[1] == direction]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Differences from LinuxCNC's rs274 that are meant: recognised one by one, each explained in docs/reference/compatibility.md.
+"""Intended differences from LinuxCNC's rs274: each is recognised separately and explained in docs/reference/compatibility.md.
 
-Each function takes a Pair and changes its two lists of calls where it finds its own difference and nothing else. What is
-equal after all of them is explained by those that have changed something.
+Each function takes a Pair and removes only its own difference from the two lists of calls. If the lists are equal after all
+functions, those that have changed something explain the differences.
 """
 import math
 import re

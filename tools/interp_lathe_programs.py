@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lathe cycles for the generator of programs: a profile as a subroutine and G70 to G72 over it."""
+"""Lathe cycles for the program generator: a profile as a subroutine, and G70 to G72 over it."""
 import math
 
 LEAST_TURN = math.radians(25)
 
 
 def profile_points(random):
-    """Points along the cut (u) and away from the axis (h): no collinear or nearly collinear neighbours."""
+    """Points along the cut (u) and away from the axis (h), without collinear or nearly collinear neighbours."""
     points = [(0.0, random.uniform(3, 8))]
     heading = None
     for _ in range(60):
@@ -37,7 +37,7 @@ def lathe_cycle(random, label):
     points = profile_points(random)
     while len(points) < 3 or points[-1][1] <= points[0][1] + 0.1:
         points = profile_points(random)
-    if points[1][1] < points[0][1]:  # ours cuts the falling part after the first point in layers there
+    if points[1][1] < points[0][1]:  # ours cuts the falling part after the first point in layers
         code = code.removesuffix('.2')
     along, across = ('X', 'Z') if is_facing else ('Z', 'X')
     lines = [f'o{label} sub', f'G0 {across}{points[0][1]:.3f} {along}0']

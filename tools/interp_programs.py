@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Seeded generator of G-code programs over all codes and modal combinations of the dialect.
+"""Random generator of G-code programs over all codes and modal combinations of the dialect.
 
-What LinuxCNC's standalone program gets wrong on its own is left out: it takes its position from its canon at a tool
-change (so a move of all axes follows), forgets the tool offset then and does not convert it with the units (so G49 stands before those), and lets a probe stop short of its end (so a
-move of all axes follows); it refuses L in G74 and axis words in G43.2; after a break a do loop runs
-once; M61 leaves the data of the tool; G10 L2 R does not know G92; it loses its way in lathe profiles of one segment,
-with collinear or nearly collinear segments, arcs beside an allowance, arcs whose lowest point lies inside them.
+Faults of LinuxCNC's standalone program are avoided. It takes its position from its canon at a tool change (so a move of all axes
+follows), loses the tool offset there and does not convert it with the units (so G49 precedes them), and lets a probe stop before
+its end (so a move of all axes follows). It rejects L in G74 and axis words in G43.2. After a break, a do loop runs once. M61
+leaves the data of the tool. G10 L2 R ignores G92. It fails in lathe profiles of one segment, with collinear or nearly collinear
+segments, arcs beside an allowance, and arcs whose lowest point is inside them.
 """
 import math
 import random
@@ -32,9 +32,9 @@ class Program:
         self.feed_mode = 'G94'
         self.is_compensated = False
         self.labels = 100
-        self.motion = 'G80'  # the meaning of axis words alone
+        self.motion = 'G80'  # the meaning of axis words without a G code
         self.has_break = False
-        self.is_numbered = False  # M61: the tool's data are not active
+        self.is_numbered = False  # M61: the data of the tool are not active
         self.spindles = 3 if seed % 2 == 1 else 1
         count = self.random.randint(5, 40)
         self.header()
@@ -386,7 +386,7 @@ class Program:
         self.add(f'F{self.value(1, 900)}')
 
     def nonsense(self):
-        """Lines that should be rejected."""
+        """Lines that must be rejected."""
         if self.chance(0.5):
             return
         self.add(self.random.choice(('G1 X', 'G1 X1 X2', 'G2 X1 Y1', 'G0 G1 X1', 'G43.1', 'M66', 'G10 L2', 'G81 X1', 'T-1 M6', 'S-1', 'G2 X1 Y1 R0.01',

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later */
-/* A HAL of one process for modules of kinematics: enough to load one, to list and set its pins, and to call
- * its exported functions (tools/compare_kinematics.py). */
+/* A HAL of one process for kinematics modules: sufficient to load one, list and set its pins, and call its
+ * exported functions (tools/compare_kinematics.py). */
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -188,12 +188,12 @@ int rtapi_set_msg_level(int l) {
     (void)l;
     return 0;
 }
-/* Arguments of the load; they keep their defaults. */
+/* Load arguments; they keep their defaults. */
 void rtapi_mp_register(const void *info) {
     (void)info;
 }
 
-/* Millwright's own function: no other module is loaded. */
+/* Millwright's own function. No other module is loaded. */
 void *mw_ext_find_symbol(const char *name) {
     (void)name;
     return NULL;

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where an operator sees something else on this build than on LinuxCNC 2.9, and why. For compare_operator.py.
+"""Intended differences for operators between this build and LinuxCNC 2.9, with reasons, for compare_operator.py.
 
-Lists are compared element by element, with the indices of linuxcnc.stat: 'gcodes[1]' is the motion mode. A difference that has
-a reason keeps it for as long as both systems show these two values: what an act has set stays until another act changes it.
+Lists are compared element by element, with the indices of linuxcnc.stat: 'gcodes[1]' is the motion mode. A difference with a
+reason keeps it while both systems report the same two values, because a value set by an act stays until another act changes it.
 """
 import json
 
@@ -81,7 +81,7 @@ def as_newer(shown):
 
 
 def errors_of(messages):
-    """Texts of the errors. Texts and displays (kinds 2, 3, 12, 13) are left out, because the reports besides errors differ."""
+    """Texts of the errors. Texts and displays (kinds 2, 3, 12, 13) are omitted, because other reports differ."""
     return [text for kind, text in messages if kind in (1, 11)]
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The display of a simulated machine that acts as a seeded operator; see compare_operator.py, which starts it.
+"""The display of a simulated machine that acts as a random operator; compare_operator.py starts it.
 
 Environment: OPERATOR_SEEDS "first:count", OPERATOR_OUT a file, OPERATOR_MACHINE its name, OPERATOR_ACTS a JSON list of acts
-instead of random ones. After each act, once the status is quiet, one line of JSON is written: seed, number, act, how
-wait_complete() ended, the status, whether a message came. It uses public interfaces alone: the Python module linuxcnc, pins of
+instead of random ones. After each act, when the status is stable, one line of JSON is written: seed, number, act, result of
+wait_complete(), the status, whether a message was received. It uses only public interfaces: the Python module linuxcnc, pins of
 halui by halcmd, linuxcncrsh by TCP.
 """
 import json
@@ -180,7 +180,7 @@ def open_program(name):
 
 
 def wait_for_line(line):
-    """Waits until the move of that line is well under way."""
+    """Waits until the move of that line has progressed well."""
     end = time.monotonic() + 5
     while time.monotonic() < end:
         poll()
@@ -247,7 +247,7 @@ def do(act):
             poll()
             if STAT.interp_state == linuxcnc.INTERP_IDLE:
                 break
-        mode(linuxcnc.MODE_MDI)  # LinuxCNC leaves the pause of a stepped program with the mode
+        mode(linuxcnc.MODE_MDI)  # LinuxCNC leaves the pause of a stepped program when the mode changes
     elif k == 'resume':
         COMMAND.auto(linuxcnc.AUTO_RESUME)
     elif k == 'pause_now':
@@ -339,7 +339,7 @@ def is_unsure(row, was_idle):
 
 
 def after_stop():
-    """The machine is brought to a position and to modes that both know."""
+    """Moves the machine to a position and to modes that both systems know."""
     poll()
     if STAT.task_state != linuxcnc.STATE_ON:
         switch_on()

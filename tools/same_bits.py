@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares what two builds do, byte by byte: for a change of shape that must change nothing else.
+"""Compares the behaviour of two builds byte by byte, for a refactoring that must not change it.
 
 usage: same_bits.py BEFORE AFTER [--seeds N] [--programs N] [--corpus FOLDER ...] [--only PART ...]
-BEFORE, AFTER: build folders. Machines, programs and generators are those of this source tree for both.
+BEFORE, AFTER: build folders. Both use the machines, programs and generators of this source tree.
   traces    every servo cycle of our programs on our machines, without and with jerk limits, and of CAM-style programs
   rs274     canon calls, errors and exit status of nc_files, of each .ngc below the corpus folders and of generated programs
   campaign  the log of traj_campaign over the first N seeds (needs -DMW_BENCH=ON in both builds)

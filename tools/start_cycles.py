@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Starts and stops a simulated machine again and again, in many ways, and looks for what it leaves behind.
+"""Starts and stops a simulated machine repeatedly, in many ways, and checks what remains.
 
 usage: start_cycles.py --bin DIR --kind virtual|realtime [--cycles N] [--record FILE] [--seed N]
 
-virtual: `millwright run` in virtual time; realtime: `linuxcnc -r` with a script as the display, by the clock.
-A cycle ends in one of the ways of WAYS, in turn; after each one no process, shared memory, socket, lock or file may be there that
-was not there before. Needs root: each cycle has its own pid, mount, IPC and network namespace, with /tmp and /dev/shm of its own, so that
-what is left can only be ours. The record (a line of JSON for each cycle) is gone on with; exit status 1 when a cycle has failed.
+virtual: `millwright run` in virtual time; realtime: `linuxcnc -r` with a script as the display, in real time.
+Each cycle ends in one of the WAYS, in turn. After each one, no new process, shared memory, socket, lock or file may exist. Needs
+root: each cycle has separate pid, mount, IPC and network namespaces with separate /tmp and /dev/shm, so that everything that
+remains is ours. The record (a line of JSON per cycle) is continued. Exit status 1: a cycle has failed.
 """
 import argparse
 import json
@@ -48,7 +48,7 @@ if sys.argv[-1] == 'stays':
 
 
 class Cycle:
-    """One start and stop within the namespaces that main() has made."""
+    """One start and stop in the namespaces that main() has created."""
 
     def __init__(self, programs, kind, way, rng):
         self.programs, self.kind, self.way, self.rng = programs, kind, way, rng
@@ -118,7 +118,7 @@ class Cycle:
     def run(self):
         self.prepare()
         if self.way == 'full_disk':
-            # The configuration's folder has no space left for parameters, journal and tool table.
+            # The configuration's folder has no space for parameters, journal and tool table.
             small = self.folder / 'small'
             small.mkdir()
             subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=1m', 'none', str(small)], check=True)
@@ -163,7 +163,7 @@ class Cycle:
                 break
             time.sleep(0.05)
         if self.way == 'KILL' and left and not left[0].startswith('process'):
-            # A killed process could not clean up, so the next one does.
+            # A killed process cannot clean up, so the next one does.
             again = Cycle(self.programs, self.kind, 'end', self.rng)
             again.run()
             self.problems += again.problems

@@ -91,7 +91,7 @@ def near_colon(seq, at):
 
 
 def whole_text(seq, at):
-    """The text that begins at a literal, and the other literals that are parts of it."""
+    """The text that begins at a literal, with the other literals that are parts of it."""
     parts = set()
     text = ('{}' if at > 0 and seq[at - 1][0] == '+' or (at > 1 and seq[at - 1][0] == '=' and seq[at - 2][0] == '+') else '') + seq[at][1]
     is_wrapped = at > 0 and seq[at - 1][0] == '('

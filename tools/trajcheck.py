@@ -1,16 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Judges a trajectory without any code of the planner: python3 tools/trajcheck.py GEOMETRY.json TRACE.csv
+"""Judges a trajectory without code of the planner: python3 tools/trajcheck.py GEOMETRY.json TRACE.csv
 
-GEOMETRY: what was programmed, as `traj_programs` writes it: start, moves (lines; arcs by centre, normal and angle), the
-tolerance P (0: exact path) and the limits of each coordinate. Lengths in mm, angles in degrees, seconds.
+GEOMETRY: the programmed path, as `traj_programs` writes it: start, moves (lines; arcs by centre, normal and angle), the tolerance
+P (0: exact path) and the limits of each coordinate. Lengths in mm, angles in degrees, seconds.
 TRACE: a line `# period_s=0.001 ...`, then one row per servo cycle: X,Y,Z,A,B,C,U,V,W.
 
-Reported: the largest speed, acceleration and jerk of each coordinate over its limit, taken from differences of the
-samples; the deviation, that is the Frechet distance between the driven and the programmed path (both walked from start
-to end, never back; Alt and Godau 1995, "Computing the Frechet distance between two polygonal curves"), the larger of
-lengths (X Y Z U V W) and degrees (A B C); the cycle time; whether the end is reached exactly.
-Exit status: 0 within everything, 1 beyond something, 2 cannot be read.
+Reported: the maximum speed, acceleration and jerk of each coordinate divided by its limit, from differences of the samples; the
+deviation, which is the Frechet distance between the executed and the programmed path (both followed from start to end, never
+back; Alt and Godau 1995, "Computing the Frechet distance between two polygonal curves"), the larger of lengths (X Y Z U V W) and
+degrees (A B C); the cycle time; whether the end is reached exactly.
+Exit status: 0 within all limits, 1 outside a limit, 2 cannot be read.
 """
 import argparse
 import json
@@ -21,7 +21,7 @@ import numpy as np
 
 LINEAR, ANGULAR = [0, 1, 2, 6, 7, 8], [3, 4, 5]
 EXACT_TOLERANCE = 1e-6  # tolerance for "exact path" [mm, degrees]
-CHORD_ERROR_SHARE = 0.002  # the deviation of chords from arcs, as a fraction of the tolerance
+CHORD_ERROR_SHARE = 0.002  # the deviation of chords from arcs as a fraction of the tolerance
 RELATIVE = 1e-6
 
 
@@ -89,7 +89,7 @@ def without_repeats(points):
 
 
 class Chain:
-    """A polygonal curve over the coordinates that move, with the values for the intervals."""
+    """A polyline over the coordinates that move, with the values for the intervals."""
 
     def __init__(self, points, used):
         self.groups = []
@@ -128,7 +128,7 @@ class Chain:
 
 
 def is_within(driven, path, reach):
-    """Whether the two chains can be followed in order, at most `reach` apart: the free space of Alt and Godau."""
+    """True if the two polylines can be followed in order, at most `reach` apart: the free space of Alt and Godau."""
     square = reach * reach
     def apart(i, j):
         return max(sum((a - b) ** 2 for a, b in zip(p, q)) for p, q in zip(driven.point(i), path.point(j)))
@@ -170,7 +170,7 @@ def is_within(driven, path, reach):
 
 
 def deviation(samples, points, highest, resolution):
-    """The Frechet distance to within `resolution`; None when it is more than `highest`."""
+    """The Frechet distance to within `resolution`; None if it exceeds `highest`."""
     used = set(np.flatnonzero(np.any(samples != samples[0], axis=0) | np.any(points != points[0], axis=0) |
                               (samples[0] != points[0])).tolist())
     if not used:

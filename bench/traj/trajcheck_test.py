@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""tools/trajcheck.py and the tests' own checkers judge the same traces: the planner's, and traces spoiled on purpose.
+"""Compares tools/trajcheck.py with the checkers of the tests on the same traces: the planner's, and modified traces with faults.
 
 usage: trajcheck_test.py FOLDER_OF_PROGRAMS
 """
@@ -30,7 +30,7 @@ def spoil(rows, how):
     elif how == "short of the end":
         out = out[:-3]
     elif how == "a part left out":
-        # The end comes by a slow straight line: limits hold, the path does not.
+        # A slow straight line replaces the path to the end: the limits are kept, but the path is not.
         out = np.concatenate([out[:1], out[0] + (out[-1] - out[0]) * np.linspace(0, 1, len(out))[:, None] ** 2])
         out[-1] = rows[-1]
     return out
@@ -44,7 +44,7 @@ def write(path, period, rows):
 
 
 def differences(kind, how, verdict, words):
-    """What the two judges do not agree on."""
+    """Differences between the two judges."""
     theirs = dict(zip(("velocity", "acceleration", "jerk"), map(float, words[:3])))
     for name, (ratio, _, _) in verdict["worst"].items():
         if abs(ratio - theirs[name]) > 1e-3 * max(1.0, ratio):

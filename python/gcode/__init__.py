@@ -32,8 +32,8 @@ from . import _core
 def parse(file, canon, unitcode="", initcode="", interpname=""):
     """parse(file, canon, unitcode="", initcode="", interpname="") -> (result, line)
 
-    Runs `unitcode` and `initcode`, then the file. `line` is the last line, or that of the error. Exceptions of the
-    canon's methods come through; RuntimeError when the file or what it needs cannot be read.
+    Runs `unitcode` and `initcode`, then the file. `line` is the last line, or the line of the error. Exceptions of the canon's
+    methods are passed on. RuntimeError: the file or a file that it needs cannot be read.
     """
     return _core.parse(file, canon, unitcode, initcode, interpname)
 

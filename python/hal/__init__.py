@@ -27,7 +27,7 @@ from . import query
 
 
 class _Wrapped:
-    """An item of HAL as a Python object, which widgets derive from together with classes of their toolkit."""
+    """An item of HAL as a Python object, from which widgets derive together with classes of their toolkit."""
 
     def __new__(cls, *args, **kwargs):
         return super().__new__(cls)
@@ -48,7 +48,7 @@ class _Wrapped:
     def __getattr__(self, name):
         if name == "_item":  # not made yet
             raise AttributeError(name)
-        return getattr(self._item, name)  # what ports can do besides
+        return getattr(self._item, name)  # other methods of ports
 
     def __repr__(self):
         return repr(self._item)
@@ -74,7 +74,7 @@ def _wrap(item):
 _components = _weakref.WeakSet()
 
 
-#: In the loops of these an interrupt is printed and forgotten.
+# : The event loops of these print the interrupt and continue.
 _TOOLKITS = ("gi.repository.Gtk", "PyQt5.QtWidgets", "PyQt6.QtWidgets", "PySide2.QtWidgets", "PySide6.QtWidgets")
 #: Time after which a program that ignores the interrupt is ended.
 _GRACE_S = 2.0
@@ -82,12 +82,12 @@ _GRACE_S = 2.0
 
 @_atexit.register
 def _leave():
-    """A program that ends normally leaves HAL, also without a request."""
+    """Leaves HAL when the program ends normally, also without a request."""
     for one in list(_components):
         try:
             one.exit()
         except error:
-            continue  # the instance is gone, and the component with it
+            continue  # the instance has ended, and the component with it
 
 
 def _end_now():
@@ -108,7 +108,7 @@ def _on_terminate(number, frame):
 
 
 def _end_by_interrupt():
-    """Lets SIGTERM, with which HAL ends programs, come as a KeyboardInterrupt, unless the program decides itself."""
+    """Converts SIGTERM, with which HAL ends programs, to a KeyboardInterrupt, unless the program handles SIGTERM."""
     if _threading.current_thread() is _threading.main_thread() \
             and _signal.getsignal(_signal.SIGTERM) == _signal.SIG_DFL:
         _signal.signal(_signal.SIGTERM, _on_terminate)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is in HAL now, as dicts by name, sorted; components newest first, threads fastest first.
+"""The current objects of HAL as dicts, sorted by name; components with the newest first, threads with the fastest first.
 
-pins(), params(), signals(), comps(), functs(), threads() take a pattern with * ? [abc]; pin(), param(), signal(),
-funct(), thread() take a name and comp() a name or an id, and give None when there is none.
+pins(), params(), signals(), comps(), functs(), threads() take a pattern with * ? [abc]. pin(), param(), signal(), funct(),
+thread() take a name, and comp() a name or an id; they return None if the object does not exist.
 """
 import enum
 import fnmatch
@@ -79,7 +79,7 @@ def signals(glob="*"):
 def comps(glob="*"):
     """By name: haltype, name, type, id, pid (0 in realtime), ready, insmod (arguments of loadrt)."""
     rows = sorted(_query.comps(glob), key=lambda row: -row["id"])
-    # The threads' own components run where the threads do.
+    # Components created by threads run in the same process as the threads.
     kinds = [CompType.USER if row["type"] == CompType.USER else CompType.REALTIME for row in rows]
     return _dict(_named("component", dict(row, type=kind, pid=row["pid"] if kind == CompType.USER else 0,
                                           insmod=row["args"]), ("type", "id", "pid", "ready", "insmod"))
@@ -87,7 +87,7 @@ def comps(glob="*"):
 
 
 def functs(glob="*"):
-    """By name: haltype, name, comp, comp_id, users (places in threads), reentrant."""
+    """By name: haltype, name, comp, comp_id, users (number of entries in threads), reentrant."""
     return _dict(_named("function", row, ("comp", "comp_id", "users", "reentrant")) for row in _query.functs(glob))
 
 
@@ -109,7 +109,7 @@ def threads(glob="*"):
 
 
 def signalpins(name):
-    """The pins of a signal, as pins() has them; None when there is no such signal."""
+    """The pins of a signal, as pins() returns them; None if the signal does not exist."""
     for row in _query.signals():
         if row["name"] == name:
             all_pins = pins()
@@ -125,7 +125,7 @@ def _one(rows, name):
 
 
 def pin(name):
-    """One pin, by its name or alias; None when there is none. So are the others."""
+    """One pin, by its name or alias; None if it does not exist. The following functions do the same."""
     return _one(pins(), name)
 
 

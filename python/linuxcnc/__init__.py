@@ -30,8 +30,8 @@ tool = _collections.namedtuple("tool", "id xoffset yoffset zoffset aoffset boffs
 from ._core import *  # noqa: E402,F401,F403  the extension raises the class above
 from ._core import command, error_channel, ini, positionlogger, stat  # noqa: E402,F401
 
-#: An NML file. Where its process xemc is REMOTE, the machine is the one behind that NML server. The default, and a
-#: file whose process xemc is LOCAL, is the machine of $MILLWRIGHT_INSTANCE on this computer.
+# : An NML file. If its process xemc is REMOTE, the machine is that of the NML server. With the default, and with a :
+# file whose process xemc is LOCAL, the machine is that of $MILLWRIGHT_INSTANCE on this computer.
 nmlfile = _os.environ.get("NMLFILE", __file__)
 if nmlfile == _os.environ.get("INI_FILE_NAME"):
     nmlfile = __file__  # the launcher's value for a machine without an NML file

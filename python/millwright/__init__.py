@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What programs of Millwright that are written in Python consist of. Nothing here is for clients."""
+"""Internal parts of Millwright's programs in Python; not for clients."""

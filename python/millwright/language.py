@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Help of programs in Python in the language of the environment, from the catalogues of the other programs (src/base/language)."""
+"""Help of Python programs in the language of the environment, from the catalogues of the other programs (src/base/language)."""
 import argparse
 import gettext
 import os
@@ -9,11 +9,12 @@ import pathlib
 ARGPARSE = ('usage: ', 'positional arguments', 'options', 'show this help message and exit', '%(prog)s: error: %(message)s\n', 'argument %(argument_name)s: %(message)s',
             'the following arguments are required: %s', 'unrecognized arguments: %s', 'expected one argument', 'invalid choice: %(value)r (choose from %(choices)s)',
             'invalid %(type)s value: %(value)r')
-MOST_FOLDERS = 7  # from this file up to the one that has share
+MOST_FOLDERS = 7  # from this file up to the folder that contains share
 
 
 def wanted(environment):
-    """The languages asked for, the best one first, as gettext finds them: LANGUAGE only where another variable names a locale other than C."""
+    """The requested languages, the preferred one first, as gettext selects them: LANGUAGE is used only if another variable names
+    a locale other than C."""
     locale = next((environment[name] for name in ('LC_ALL', 'LC_MESSAGES', 'LANG') if environment.get(name)), '')
     plain = locale.split('.')[0].split('@')[0]
     if plain in ('', 'C', 'POSIX'):
@@ -42,13 +43,13 @@ CATALOGUE = read_catalogue(os.environ)
 
 
 def shown(text):
-    """`text` in the user's language; blanks at its ends stay."""
+    """`text` in the user's language; blanks at its ends are kept."""
     core = text.strip()
     return text.replace(core, CATALOGUE.gettext(core)) if core else text
 
 
 class Parser(argparse.ArgumentParser):
-    """Its help and its errors are in the user's language."""
+    """Prints help and errors in the user's language."""
 
     def __init__(self, description, **more):
         argparse._ = shown  # where argparse looks up its own texts

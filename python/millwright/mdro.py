@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""mdro: what a digital read-out shows and does, its pins, and the server of its page.
+"""mdro: the values and functions of a digital read-out, its pins, and the server of its page.
 
-Scales count in the unit of the machine (inch, or mm); offsets of coordinate systems are kept in it, values are shown in the
-chosen one. Letters A, B and C are degrees. Nothing is written to files: what is set is gone with the program, as with a
-read-out that is switched off.
+Scales count in the unit of the machine (inch or mm). Offsets of coordinate systems are stored in this unit; values are shown in
+the selected unit. Letters A, B and C are degrees. Nothing is written to files: all settings are lost when the program ends, as
+with a read-out that is switched off.
 """
 import argparse
 import http.server
@@ -26,17 +26,17 @@ LETTERS = 'XYZABCUVW'
 ROTARY = 'ABC'
 MM_PER_INCH = 25.4
 SYSTEMS = ('machine', 'G54', 'G55', 'G56', 'G57')
-# Parameters of G-code: X of the first coordinate system, and how far the next one is.
+# Parameters of G-code: X of the first coordinate system, and the distance to the next system.
 FIRST_PARAMETER, PARAMETERS_EACH = 5221, 20
 LARGEST_REQUEST = 4096
 
 
 class Refused(Exception):
-    """What cannot be done, for the operator."""
+    """An action that is not possible, with a text for the operator."""
 
 
 def offsets_of(path, axes):
-    """{system: offsets} of a parameter file. ValueError with the line that is wrong, OSError."""
+    """{system: offsets} of a parameter file. Raises ValueError with the faulty line, or OSError."""
     offsets = {system: [0.0] * len(axes) for system in SYSTEMS}
     for number, line in enumerate(pathlib.Path(path).read_text().splitlines(), 1):
         words = line.split('#')[0].split()
@@ -55,10 +55,11 @@ def offsets_of(path, axes):
 
 
 class Readout:
-    """Values of the axes in a coordinate system and unit, and what its buttons do."""
+    """Values of the axes in a coordinate system and unit, and the functions of the buttons."""
 
     def __init__(self, axes, scales_mm, offsets, scale, index):
-        """scale(n): where the scale of an axis is. index(n[, value]): whether it waits for its index, and makes it do so."""
+        """scale(n): position of the scale of an axis. index(n[, value]): whether it waits for its index; `value` starts or ends
+        the wait."""
         self.axes, self.scales_mm, self.offsets, self.scale, self.index = axes, scales_mm, offsets, scale, index
         self.system, self.mm = SYSTEMS[1], scales_mm
         self.guard = threading.Lock()
@@ -69,7 +70,7 @@ class Readout:
         return MM_PER_INCH if self.mm else 1 / MM_PER_INCH
 
     def value(self, axis):
-        """What is shown; None when the scale does not say a number."""
+        """The displayed value; None if the scale does not report a number."""
         scale = self.scale(axis)
         return (scale - self.offsets[self.system][axis]) * self.factor(axis) if math.isfinite(scale) else None
 
@@ -113,10 +114,10 @@ class Readout:
 
 
 def handler_of(readout, token, point_size, verbose):
-    """Requests for /TOKEN/ and nothing else: other pages and other users of the computer do not know it."""
+    """Answers requests for /TOKEN/ only, because other pages and other users of the computer do not know the token."""
     class Handler(http.server.BaseHTTPRequestHandler):
         protocol_version = 'HTTP/1.1'
-        timeout = 30  # s: a connection of which nothing comes
+        timeout = 30  # s: for a connection without data
 
         def answer(self, status, text, kind='application/json'):
             body = text.encode()
@@ -173,7 +174,7 @@ def size_of(text):
 
 
 def settings(words, doc):
-    """Options, with those of an INI file where one is named."""
+    """Options, including those of the INI file if one is named."""
     parser = Parser(prog=NAME, usage=doc.split('usage: ')[1].split('\n')[0],
                     description='A digital readout for manual machines: shows the positions of the scales in a browser on this computer.')
     parser.add_argument('-v', action='count', default=0, dest='verbose', help='verbose output; twice: also all requests')
@@ -200,7 +201,7 @@ def take_ini(parser, options):
     ini = linuxcnc.ini(options.ini)
     geometry, size, folder = ini.find('DISPLAY', 'GEOMETRY'), ini.find('DISPLAY', 'POINT_SIZE'), pathlib.Path(options.ini).parent
     try:
-        # The key is also for pictures of machines: "XYZ-B!".
+        # The key also describes pictures of machines: "XYZ-B!".
         options.axes = options.axes or (axes_of(re.sub('[^' + LETTERS + ']', '', geometry.upper())) if geometry else None)
         options.point_size = options.point_size or (size_of(size) if size else None)
     except argparse.ArgumentTypeError as error:
@@ -212,7 +213,7 @@ def take_ini(parser, options):
 
 
 def join_hal(options):
-    """The component with its pins, and the read-out on them."""
+    """Creates the component with its pins, and the read-out that uses them."""
     import hal
     component = hal.component(NAME)
     scales = [component.newpin(f'axis.{n}', hal.HAL_FLOAT, hal.HAL_IN) for n in range(len(options.axes))]

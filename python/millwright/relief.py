@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Tool paths over a relief: how low a tool may go over a field of heights, and the lines of passes.
+"""Tool paths over a relief: the minimum height of a tool over a height field, and the lines of passes.
 
 Heights are an array [row, column] in units, row 0 at y = 0, at most 0 (the top of the stock). Pixels are points on a grid of
-`pixel` units. Along a scan the tool is looked at every PARTS-th of a pixel, and what it touches between two such places
-counts for both, so that no straight move between them goes into a point.
+`pixel` units. Along a scan the tool is evaluated at every PARTS-th of a pixel. A contact between two of these points counts for
+both, so that no straight move between them cuts into a point.
 """
 import math
 
@@ -11,7 +11,7 @@ PARTS = 8
 
 
 def tool_rise(kind, radius, distance):
-    """How much higher than its tip the tool is at a distance of its axis (at most its radius)."""
+    """Height of the tool's surface above its tip at a distance from its axis (at most its radius)."""
     if kind == 'ball':
         return radius - math.sqrt(max(radius * radius - distance * distance, 0.0))
     if kind == 'flat':
@@ -20,7 +20,8 @@ def tool_rise(kind, radius, distance):
 
 
 def allowed(np, heights, row, pixel, kind, radius, reach_rows=0.0):
-    """Lowest tip at places (column * PARTS + part) along a row. reach_rows: pixels by which the tool may be beside it."""
+    """Minimum tip height at the points (column * PARTS + part) along a row. reach_rows: distance in pixels by which the tool may
+    be beside the row."""
     rows, columns = heights.shape
     reach = radius / pixel
     lowest = np.full((PARTS, columns), -np.inf)
@@ -39,13 +40,13 @@ def allowed(np, heights, row, pixel, kind, radius, reach_rows=0.0):
                     np.maximum(lowest[part, :columns - dx], line[dx:] - rise, out=lowest[part, :columns - dx])
                 else:
                     np.maximum(lowest[part, -dx:], line[:dx] - rise, out=lowest[part, -dx:])
-    # Parts behind the last pixel are none of the picture's.
+    # Parts behind the last pixel are outside the picture.
     return lowest.T.reshape(-1)[:(columns - 1) * PARTS + 1]
 
 
 def straight(points, tolerance):
-    """The points of which all others are within the tolerance of the straight lines between them. points: [(x, z)] with x rising
-    or falling: the deviation is measured in z, so that it is no less than the distance."""
+    """Points such that all others are within the tolerance of the straight lines between them. points: [(x, z)] with x rising or
+    falling. The deviation is measured in z, so it is at least the distance."""
     kept, start = [points[0]], 0
     while start < len(points) - 1:
         # The range of slopes that keep all points so far within the tolerance; only a slope through a point is used.
@@ -66,7 +67,7 @@ def straight(points, tolerance):
 
 
 def runs_up(points, down):
-    """A scan as runs that only climb (or, with down, only fall), each begun at its low (high) end."""
+    """Divides a scan into runs that only climb (with `down` only descend), each starting at its low (high) end."""
     runs, start = [], 0
     while start < len(points) - 1:
         end, sign = start + 1, 0
@@ -83,7 +84,7 @@ def runs_up(points, down):
 
 
 def pieces(points, wanted):
-    """Parts of a scan where wanted is true."""
+    """The parts of a scan in which wanted is true."""
     found, start = [], None
     for n in range(len(points) + 1):
         inside = n < len(points) and wanted[n]
@@ -97,7 +98,7 @@ def pieces(points, wanted):
 
 
 def widen(np, wanted, places):
-    """True also for so many places beside those that are."""
+    """True also for this number of neighbours on each side."""
     if not wanted.any() or places <= 0:
         return wanted
     sums = np.concatenate(([0], np.cumsum(wanted)))
@@ -115,12 +116,12 @@ class Relief:
     """Passes over a field of heights."""
 
     def __init__(self, np, heights, settings, origin, progress):
-        """origin: pixels by which the field begins left of and below zero. progress(part): a part of 1 is done."""
+        """origin: pixels of the field to the left of and below zero. progress(part): called with the completed fraction."""
         self.np, self.heights, self.set, self.origin, self.progress = np, heights, settings, origin, progress
         self.tops = {}
 
     def passes(self):
-        """[(axis, rows)] of the pattern, axis 0 for rows."""
+        """[(axis, rows)] of the pattern; axis 0: rows."""
         return {'rows': [0], 'columns': [1], 'rows-columns': [0, 1], 'columns-rows': [1, 0]}[self.set.pattern]
 
     def field(self, axis):
@@ -138,7 +139,7 @@ class Relief:
         return self.tops[axis]
 
     def steep(self, axis, row):
-        """Where the field climbs more steeply than the contact angle in the direction across the scan, within the tool's reach."""
+        """True where the field is steeper than the contact angle across the scan, within the tool's reach."""
         np, field = self.np, self.field(axis)
         limit = math.tan(math.radians(self.set.contact_angle)) * self.set.pixel_size
         around = field[max(row - self.set.step_over, 0):row + self.set.step_over + 1]
@@ -147,14 +148,14 @@ class Relief:
         return (np.abs(np.diff(around, axis=0)) > limit).any(axis=0)
 
     def bounded(self, axis, order, row, count):
-        """Places of a scan that are milled, after lace bounding."""
+        """Points of a scan that are milled, after lace bounding."""
         np, bounds = self.np, self.set.lace
         if len(self.passes()) < 2 or bounds == 'none' or (order == 0 and bounds != 'full'):
             return np.ones(count, bool)
         line = self.field(axis)[row]
         limit = math.tan(math.radians(self.set.contact_angle)) * self.set.pixel_size
         if order == 0:
-            # Leave out what is steep across, which the second direction takes.
+            # Omits areas that are steep across the scan; the second direction mills them.
             wanted = ~self.steep(axis, row)
         else:
             band = self.field(axis)[max(row - self.set.step_over, 0):row + self.set.step_over + 1]
@@ -163,12 +164,13 @@ class Relief:
             wanted[:-1] |= climbs
             wanted[1:] |= climbs
         places = np.repeat(wanted, PARTS)[:count]
-        # Both directions overlap by the reach of the tool and a row.
+        # The two directions overlap by the reach of the tool and one row.
         margin = math.ceil(self.set.tool_diameter / 2 / self.set.pixel_size) + self.set.step_over
         return widen(np, places, margin * PARTS)
 
     def cuts(self, order, axis, floor, raised):
-        """[(row, [(place in units, z)])] of a pass in the order of milling. floor: not lower; raised: stays above the surface."""
+        """[(row, [(position in units, z)])] of a pass in the order of milling. floor: lower limit; raised: distance above the
+        surface."""
         direction, back = self.set.direction, False
         for row, tips in self.tips(axis).items():
             z = self.np.maximum(tips + raised, floor)
@@ -183,7 +185,7 @@ class Relief:
             back = direction == 'alternating' and not back
 
     def over(self, axis, first, last, place):
-        """Height over which the tool may go from one row to another, at a place along them."""
+        """Height at which the tool may move from one row to another, at a position along them."""
         field = self.field(axis)
         low, high = min(first, last), max(first, last)
         column = min(max(round(place / self.set.pixel_size + self.origin), 0), field.shape[1] - 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""image-to-gcode: options and remembered settings, pictures, and the lines of the program.
+"""image-to-gcode: options and stored settings, pictures, and the lines of the program.
 
 X0 Y0 is the centre of the lower left pixel, Z0 the top of the stock.
 """
@@ -16,7 +16,7 @@ from .whole_file import write_whole
 NAME = 'image-to-gcode'
 MM_PER_INCH = 25.4
 MOST_PIXELS = 64_000_000
-# (option, kind or choices, of LinuxCNC's program and in inches, whether a length, help)
+# (option, type or choices, default of LinuxCNC's program in inches, whether it is a length, help)
 OPTIONS = (
     ('units', ('in', 'mm'), 'in', False, 'G20 or G21, and the unit of lengths here'),
     ('invert', bool, False, False, 'white is low, black is high'),
@@ -60,7 +60,7 @@ def settings_path():
 
 
 def remembered(path):
-    """What the file says; {} when there is none."""
+    """The settings stored in the file; {} if it does not exist."""
     try:
         kept = json.loads(path.read_text())
     except FileNotFoundError:
@@ -78,7 +78,7 @@ def remembered(path):
 
 
 def remember(path, settings):
-    """Whole or not at all."""
+    """Writes the file completely or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, json.dumps({key_of(option): getattr(settings, key_of(option)) for option, *_ in OPTIONS}, indent=1) + '\n')
 
@@ -100,7 +100,7 @@ def parse(words):
 
 
 def complete(given):
-    """All settings: options, then what is remembered, then those at first."""
+    """All settings: options, then stored settings, then defaults."""
     kept = {} if given.forget else remembered(settings_path())
     units = given.units or kept.get('units') or 'in'
     if kept.get('units', units) != units:
@@ -150,7 +150,7 @@ def read_heights(np, settings):
 
 
 class Program:
-    """Lines of G-code; unchanged words are left out."""
+    """Writes lines of G-code; omits unchanged words."""
 
     def __init__(self, settings):
         self.set, self.lines, self.digits = settings, [], 5 if settings.units == 'in' else 4
@@ -185,7 +185,7 @@ class Program:
         self.lines += [f'S{one.spindle:g} M3', 'G4 P3']
 
     def cut(self, axis, row_units, points, over):
-        """One run of points; over: the height at which the tool comes from where it was, None for the safety height."""
+        """One run of points. over: height of the approach from the previous position; None: the safety height."""
         def at(place):
             return {'X': place, 'Y': row_units} if axis == 0 else {'X': row_units, 'Y': place}
         one = self.set
@@ -214,7 +214,7 @@ def wrap(text, width=100):
 
 
 def levels(settings):
-    """(not lower than, above the surface) of each pass: layers of roughing, then the surface itself."""
+    """(lower limit, distance above the surface) of each pass: layers of roughing, then the surface."""
     if settings.roughing_offset <= 0:
         return [(-math.inf, 0.0)]
     count = math.ceil(settings.depth / settings.roughing_depth - 1e-9)

@@ -33,7 +33,8 @@ def find_tests(folders):
         for path, names, files in os.walk(folder):
             names.sort()
             place = pathlib.Path(path)
-            # A program called test is a test only beside what judges it: other folders have such programs too.
+            # A program called `test` counts as a test only beside a file `expected` or `checkresult`, because other
+            # folders have such programs too.
             is_judged = 'expected' in files or 'checkresult' in files
             if any(name in files and (is_judged or name != 'test') for name in PROGRAMS):
                 tests.append(place)
@@ -49,7 +50,7 @@ def is_skipped(test, environment):
 
 
 def run_words(words, test, environment, patience_s):
-    """The exit status; None when it did not end. What it has started ends with it."""
+    """The exit status; None if the program did not end. Its child processes end with it."""
     with open(test / 'result', 'wb') as result, open(test / 'stderr', 'wb') as errors:
         process = subprocess.Popen(words, cwd=test, env=environment, stdin=subprocess.DEVNULL, stdout=result, stderr=errors,
                                    start_new_session=True)
@@ -67,7 +68,7 @@ def run_words(words, test, environment, patience_s):
 
 
 def check(test, environment):
-    """Why the result is wrong; empty when it is right."""
+    """Why the result is wrong; empty if it is correct."""
     checkresult = test / 'checkresult'
     if checkresult.exists():
         words = [str(checkresult.absolute())] if is_program(checkresult) else ['bash', str(checkresult.absolute())]
@@ -81,12 +82,12 @@ def check(test, environment):
 
 
 def has_overrun(test, name):
-    """The sampler marks lost samples with a line of this word; other programs may write it as they like."""
+    """The sampler marks lost samples with a line that contains only this word; other programs may print the word."""
     return name == 'test.hal' and b'overrun' in (test / 'result').read_bytes().splitlines()
 
 
 def run_test(test, environment, patience_s):
-    """Why it fails; empty when it passes."""
+    """Why the test fails; empty if it passes."""
     name = next(name for name in PROGRAMS if (test / name).exists())
     program = PROGRAMS[name]
     words = [*program, name] if program else [str((test / name).absolute())]
@@ -108,7 +109,7 @@ def show_end(count, failed):
 
 
 def main(arguments, programs):
-    """`programs`: the folder of halrun and the others that tests call; they are found there first."""
+    """`programs`: folder of halrun and other programs that tests call; it is searched first."""
     parser = Parser(prog='runtests', description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('folders', nargs='*', default=['.'], help='folder to search for tests (default: the current folder)')
     parser.add_argument('-n', action='store_true', help='only list the tests that would run')

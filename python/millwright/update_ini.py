@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Brings INI files of before joints and axes (version 1.1), and the HAL files that they name, to that form.
+"""Converts INI files from before joints and axes (version 1.1), and the HAL files that they name.
 
-What is what: LinuxCNC's manual "Updating LinuxCNC". Lines that need no change stay as they are, with comments and order.
+The names are described in LinuxCNC's manual "Updating LinuxCNC". Lines that need no change are kept, with comments and order.
 """
 import os
 import pathlib
@@ -19,7 +19,7 @@ TRAJ_NAMES = {
     'MAX_ACCELERATION': 'MAX_LINEAR_ACCELERATION', 'DEFAULT_ACCELERATION': 'DEFAULT_LINEAR_ACCELERATION',
     'MAX_LINEAR_ACCEL': 'MAX_LINEAR_ACCELERATION', 'DEFAULT_LINEAR_ACCEL': 'DEFAULT_LINEAR_ACCELERATION',
 }
-# Of an axis in the new form; a joint keeps them as well.
+# Keys of an axis in the new form; a joint keeps them too.
 AXIS_KEYS = ('MIN_LIMIT', 'MAX_LIMIT', 'MAX_VELOCITY', 'MAX_ACCELERATION')
 PLAIN_KINEMATICS = ('trivkins', 'gentrivkins', 'gantrykins')
 USAGE = """usage: update_ini [-f] [-d] MACHINE.ini
@@ -34,7 +34,7 @@ exit status: 0 done, or nothing to do; 1 failed; 2 wrong usage; 42 cancelled by 
 
 
 class Refused(Exception):
-    """Why the files are left as they are."""
+    """Reason why the files are not changed."""
 
 
 class Setting:
@@ -47,7 +47,7 @@ class Setting:
         self.value = found[4] if found else None
 
     def number(self):
-        """The value without a comment behind it; None where it is no number."""
+        """The value without a trailing comment; None if it is not a number."""
         try:
             return float(re.split(r'\s*[#;]', self.value)[0])
         except (TypeError, ValueError):
@@ -81,7 +81,7 @@ def values_of(lines):
 
 
 class Machine:
-    """Which joint each numbered axis of the old file becomes, and which letter it moves."""
+    """The joint that each numbered axis of the old file becomes, and the letter that it moves."""
 
     def __init__(self, values, hal_text):
         coordinates = ''.join(values.get(('TRAJ', 'COORDINATES'), ['XYZ'])[0].split('#')[0].split()).upper()
@@ -95,7 +95,7 @@ class Machine:
         words = loaded[2].split() if loaded else []
         letters = next((word.split('=', 1)[1].upper() for word in words if word.lower().startswith('coordinates=')), '')
         if self.kinematics not in PLAIN_KINEMATICS:
-            # The axes of a robot's joints are not known: numbers stay.
+            # The axes of a robot's joints are not known: the numbers are kept.
             self.joint_of = {number: number for number in self.numbers}
             self.letter_of = {number: LETTERS[number] for number in self.numbers if LETTERS[number] in coordinates}
             self.words = ' '.join([self.kinematics, *words])
@@ -170,7 +170,7 @@ def plain(line):
 
 
 def new_axis(body, number, machine, done_letters):
-    """[JOINT_m] with all settings, behind [AXIS_l] with those of the axis."""
+    """[JOINT_m] with all settings, after [AXIS_l] with those of the axis."""
     joint = [f'[JOINT_{machine.joint_of[number]}]']
     axis = {}
     for line in body[1:]:
@@ -193,7 +193,7 @@ JOG_PIN = re.compile(r'\baxis\.(\d)\.(jog-(?:enable|scale|counts|vel-mode|accel-
 
 
 def new_hal_line(line, machine):
-    """The lines that take the place of one of a HAL file."""
+    """The lines that replace a line of a HAL file."""
     code, hash_sign, comment = line.partition('#')
     joint = lambda number: str(machine.joint_of.get(int(number), int(number)))
     code = re.sub(r'\bloadrt\s+(?:%s)\b.*' % '|'.join(PLAIN_KINEMATICS), 'loadrt [KINS]KINEMATICS', code)
@@ -259,7 +259,7 @@ def update(ini, isKept):
     machine = Machine(values, '\n'.join(texts.values()))
     changed = {path: '\n'.join(line for old in text.splitlines() for line in new_hal_line(old, machine)) + '\n'
                for path, text in texts.items()}
-    changed[ini] = '\n'.join(new_ini(lines, machine)) + '\n'  # the last, as its version says that it is done
+    changed[ini] = '\n'.join(new_ini(lines, machine)) + '\n'  # written last, because its version shows that the conversion is complete
     if isKept:
         keep = ini.with_suffix('.old')
         if keep.exists():

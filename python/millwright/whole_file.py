@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Files that are either the old ones or the new ones, as base/temporary_file.hh writes them in C++."""
+"""Replaces files atomically, as base/temporary_file.hh does in C++."""
 
 import errno
 import fcntl
@@ -20,7 +20,7 @@ def prefix_of(path):
 
 
 def is_same(path, fd):
-    """The name is that of the open file."""
+    """True if the name is that of the open file."""
     try:
         named, opened = os.lstat(path), os.fstat(fd)
     except FileNotFoundError:
@@ -56,7 +56,7 @@ def create(path):
         fd = os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o600)
         try:
             fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:  # another process takes it for dead
+        except BlockingIOError:  # another process is removing it as abandoned
             os.close(fd)
             continue
         except OSError:
@@ -68,7 +68,7 @@ def create(path):
 
 
 def write_whole(path, text, errors='strict'):
-    """Replaces the file by `text` in UTF-8. A file that is there keeps its permissions. After an OSError the old file is untouched."""
+    """Replaces the file by `text` in UTF-8. An existing file keeps its permissions. After an OSError the old file is unchanged."""
     path = pathlib.Path(path)
     if path.exists() and not path.is_file():
         raise OSError(errno.EINVAL, 'not a regular file', str(path))

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Helpers for programs that look at G-code through the module gcode: see rs274.interpret.
+"""Helpers for programs that interpret G-code with the module gcode: see rs274.interpret.
 
-Other modules of a package rs274 further along the path (those of an installed LinuxCNC, for its own programs) stay
-within reach.
+Modules of other packages rs274 later in the path (those of an installed LinuxCNC, for its programs) remain accessible.
 """
 import pkgutil
 

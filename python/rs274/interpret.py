@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Canon objects for gcode.parse to build on.
+"""Base classes for canon objects of gcode.parse.
 
     class MyCanon(StatMixin, ArcsToSegmentsMixin, Translated, PrintCanon): ...
 
-Lengths are in inches and angles in degrees, as gcode.parse gives them.
+Lengths are in inches and angles in degrees, as gcode.parse reports them.
 """
 import math
 
@@ -13,7 +13,7 @@ AXES = "xyzabcuvw"
 
 
 class Translated:
-    """Keeps G5x, G92 and rotation, and gives straight moves in the coordinates behind them, to
+    """Stores G5x, G92 and rotation, and passes straight moves in coordinates without these offsets to
     straight_traverse_translated(x .. w) and straight_feed_translated(x .. w)."""
 
     g92_offset_x = g92_offset_y = g92_offset_z = 0
@@ -27,7 +27,7 @@ class Translated:
     rotation_sin, rotation_cos = 0.0, 1.0
 
     def rotate_and_translate(self, x, y, z, a, b, c, u, v, w):
-        """Program coordinates to those without offsets: (x .. w)."""
+        """Converts program coordinates to coordinates without offsets: (x .. w)."""
         point = [value + getattr(self, "g92_offset_" + axis)
                  for axis, value in zip(AXES, (x, y, z, a, b, c, u, v, w))]
         if self.rotation_xy:
@@ -57,8 +57,8 @@ class Translated:
 
 
 class ArcsToSegmentsMixin:
-    """Gives arcs as chords, to straight_arcsegments(list of end points with nine coordinates). Needs the offsets of
-    Translated and the attribute lo: where the last move ended."""
+    """Passes arcs as chords to straight_arcsegments(list of end points with nine coordinates). Needs the offsets of Translated
+    and the attribute lo: the end of the last move."""
 
     plane = 1
     arcdivision = 64
@@ -72,7 +72,7 @@ class ArcsToSegmentsMixin:
 
 
 class PrintCanon:
-    """Prints what a program does, a call on each line."""
+    """Prints the calls of a program, one per line."""
 
     def _print(self, name, args):
         print(name, " ".join("%.4g" % arg for arg in args))
@@ -134,7 +134,7 @@ class PrintCanon:
 
 
 class StatMixin:
-    """Answers the questions of gcode.parse from a linuxcnc.stat object. `random`: the changer is a random one."""
+    """Answers queries of gcode.parse from a linuxcnc.stat object. `random`: the tool changer is random."""
 
     NO_TOOL = (-1,) + (0.0,) * 12 + (0,)
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A computer that is busy with other programs: the threads of task run before them, programs that task starts and long scripts do not.
+"""Tests a computer that is busy with other programs: the threads of task run before them; programs that task starts and long
+scripts do not.
 
 usage: busy.py BIN_FOLDER ROOT [NAME]
 """
@@ -19,7 +20,7 @@ LONG = 'import os\nwhile not os.path.exists({!r}): pass'
 
 
 def stolen_s():
-    """Time that the host of a virtual computer has given to others: then also the first of all threads is late."""
+    """Time that the host of a virtual machine has given to others. Then even the highest-priority thread is late."""
     return int(pathlib.Path('/proc/stat').read_text().split(maxsplit=9)[8]) / os.sysconf('SC_CLK_TCK')
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Row 15: stops of new clients while all entries of the mailbox are occupied, and while descriptors run out.
+"""Row 15: new clients can stop the machine while all entries of the mailbox are occupied, and while no descriptors are free.
 
 usage: crowd.py BIN_FOLDER ROOT [NAME]
 """
@@ -21,7 +21,7 @@ LEFT = 40
 
 
 def fill(machine, found):
-    """Clients of Python until the machine accepts no more."""
+    """Starts Python clients until the machine accepts no more."""
     clients = [machine.command]
     while len(clients) <= CLIENTS + 1:
         try:

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The disk of the configuration does not answer while a program uses a file on it: an abort is answered, the machine stays on.
+"""The disk of the configuration does not respond while a program uses a file on it: an abort is answered, and the machine stays
+on.
 
 usage: disks.py BIN_FOLDER ROOT [NAME]
 """

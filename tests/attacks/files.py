@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pipes, devices and endless files instead of programs, logs and a machine's files: an error at once, and the machine continues to cut.
+"""Pipes, devices and endless files instead of programs, logs and a machine's files cause an error at once, and the machine
+continues to cut.
 
 usage: files.py BIN_FOLDER ROOT
 """

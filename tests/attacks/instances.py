@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A machine that was killed leaves nothing that prevents the next start by any user; a running machine is named.
+"""A machine that was killed must not prevent the next start by any user; the message about a running machine names it.
 
 usage: instances.py BIN_FOLDER ROOT
 """
@@ -23,7 +23,7 @@ expect = FOUND.expect
 
 
 def begun(machine, name, **more):
-    """Starts the same instance again and returns its output: 'is running: instance', or its end."""
+    """Starts the same instance again and returns its output: 'is running: instance', or the last line."""
     out = machine.folder / name
     with out.open('w') as file:
         process = subprocess.Popen([machine.programs / 'millwright', 'start', machine.ini, '--no-display'], env=dict(machine.env, **more.pop('env', {})),

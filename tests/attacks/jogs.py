@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Clients that jog and are killed, suspended, or end; over NML a connection that is closed. The jog ends within 0.3 s, with a message. A
-client that is alive but idle continues to jog.
+"""Clients that jog are killed, suspended or ended; with NML their connection is closed. The jog must end within 0.3 s, with a
+message. The jog of a client that is alive but idle continues.
 
 usage: jogs.py BIN_FOLDER ROOT
 """
@@ -111,7 +111,7 @@ def other_takes_over(machine):
 
 
 def over_nml(machine):
-    """A client in the manner of LinuxCNC sends the jog and renews no lease."""
+    """A client like those of LinuxCNC sends the jog and does not renew a lease."""
     to_start(machine)
     with socket.socket() as free:
         free.bind(('127.0.0.1', 0))

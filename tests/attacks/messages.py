@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Messages of programs that clients cannot read unchanged, and messages after the server of the screens was killed.
+"""Messages that clients cannot read unchanged, and messages after the server of the screens was killed.
 
 usage: messages.py BIN_FOLDER ROOT [NAME]
 """
@@ -41,7 +41,8 @@ def encoding(machine, found):
 
 
 def restarted(machine, found):
-    """Row 30: a server that was killed and started again shows what appeared before and meanwhile, although another client has read it."""
+    """Row 30: a server that was killed and restarted shows earlier messages and those sent during the restart, even if another
+    client has read them."""
     def post(text):
         machine.command.error_msg(text)
         found.expect(machine.until(lambda: text in machine.messages, 5), f'Python reads "{text}"', machine.messages)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ten megabytes of each nesting construct for each program that reads files, with 1 GB of memory: an error with file and line.
+"""Tests each program that reads files with ten megabytes of each nesting construct and 1 GB of memory: an error with file and
+line.
 
 usage: nesting.py BIN_FOLDER [NAME...]   NAME: only these cases
 """
@@ -148,7 +149,7 @@ def limited():
 
 
 def finding(root, case):
-    """(fault of the case, empty if none; a line about the time and memory that it used)."""
+    """(fault of the case, empty if none; a line about the used time and memory)."""
     name, file, text, command, place = case
     folder = root / name
     folder.mkdir()

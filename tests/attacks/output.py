@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Whatever happens to the terminal, pipe or file of `millwright start`, the machine continues to cut, answers and ends.
+"""The machine continues to cut, answers and ends, whatever happens to the terminal, pipe or output file of `millwright start`.
 
 usage: output.py BIN_FOLDER ROOT [gone|unread|stopped|full]
 """
@@ -23,7 +23,7 @@ MANY = f'G21 G90 G61 F600\nM3 S500\no1 repeat [3000]\n{MESSAGE}M66 P0 L0\no1 end
 
 
 def places(kind):
-    """The target of the output, and the attack on it after the start of the machine."""
+    """The target of the output, and the attack on it after the machine has started."""
     if kind == 'full':
         return os.open('/dev/full', os.O_WRONLY), lambda: None
     if kind == 'stopped':

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A machine that is attacked while it cuts: a copy of configs/sim/mill_mm.ini in realtime as a separate instance, and a client of
-Python's linuxcnc beside it."""
+"""A machine that is attacked while it cuts: a copy of configs/sim/mill_mm.ini in realtime as a separate instance, with a client
+of Python's linuxcnc."""
 import os
 import pathlib
 import shutil
@@ -135,7 +135,7 @@ class Machine:
             self.process.send_signal(signal.SIGKILL)
             self.process.wait()
         for path in pathlib.Path('/dev/shm').glob(f"*{self.env['MILLWRIGHT_INSTANCE']}*"):
-            path.unlink(missing_ok=True)  # of a machine that was killed
+            path.unlink(missing_ok=True)  # left by a machine that was killed
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
@@ -149,8 +149,8 @@ def prepare_python(machine):
 
 
 def run_attacks(script, attacks, prepare=lambda machine: None, edit=lambda text: text):
-    """The main program of a file of attacks, each on a machine and in a process of its own: linuxcnc is imported once in a process.
-    `attacks`: functions of a machine and its findings, by their names. Ends with the exit status."""
+    """The main program of an attack file. Runs each attack with a separate machine and process, because linuxcnc can be imported
+    only once per process. `attacks`: functions of a machine and its findings, by name. Exits with the status."""
     from mill_by_hand import Findings  # pylint: disable=import-outside-toplevel
     if len(sys.argv) <= 3:
         sys.exit(max(subprocess.run([sys.executable, script, *sys.argv[1:3], name], check=False).returncode for name in attacks))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Python in G-code that sleeps, never ends, or wants to end the process: stops are carried out meanwhile, the machine stays up, and
-SIGTERM ends it.
+"""Python in G-code that sleeps, never ends, or tries to end the process: stops are executed, the machine stays up, and SIGTERM
+ends it.
 
 usage: scripts.py BIN_FOLDER ROOT [NAME]
 """

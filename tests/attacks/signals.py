@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""SIGTERM, SIGHUP and SIGINT in a cut: the axes come to rest before the spindle goes off, and the machine ends in time.
+"""SIGTERM, SIGHUP and SIGINT during a cut: the axes stop before the spindle switches off, and the machine ends in time.
 
 usage: signals.py BIN_FOLDER ROOT [TERM|HUP|INT]
 """

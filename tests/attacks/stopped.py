@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A process of a machine that cuts is stopped by SIGSTOP and continued: axes, spindle and coolant stop, stops are not reported as
-done where they are not, and the operator reads which process it was.
+"""A process of a machine that cuts is stopped by SIGSTOP and continued: axes, spindle and coolant stop; a stop is reported as
+done only if it was executed; and a message names the process.
 
 usage: stopped.py BIN_FOLDER ROOT [NAME]
 """
@@ -57,7 +57,7 @@ time.sleep(60)
 
 
 def killed(machine, found):
-    """The realtime process is killed; a HAL program that does not end delays the end, and not the message."""
+    """The realtime process is killed. A HAL program that does not end delays the end, but not the message."""
     program = subprocess.Popen([sys.executable, '-c', DEAF], env=machine.env, stdout=subprocess.PIPE, text=True)
     try:
         assert program.stdout.readline() == 'ready\n'

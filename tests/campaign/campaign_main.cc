@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random sessions at random machines, docs/developer/motion_campaign.md.
+// Random sessions with random machines, docs/developer/motion_campaign.md.
 #include <algorithm>
 #include <cstdio>
 #include <set>

@@ -77,7 +77,7 @@ void make_homing(plants::Random &random, JointDesign &j) {
     j.home_switch_at = j.low - TO_HOME_SWITCH;
     j.home_offset = j.home_switch_at;
     if (j.home_kind == HomeKind::SWITCH_AND_INDEX) {
-        // Far enough from the switch edge that the slow move always finds the same mark.
+        // Far enough from the switch edge that the slow move always finds the same index mark.
         j.index_spacing = 5;
         j.index_at = rounded(j.home_switch_at + std::copysign(random.real(0.5, 1.5), j.latch), 0.01);
         j.home_offset = j.index_at;
@@ -107,7 +107,7 @@ void make_trivial(plants::Random &random, Design &d, const std::string &letters)
         d.joints.push_back(j);
         d.axes.push_back(axis_of(axis, j));
     }
-    // Home sequences begin at 0 or 1 and have no gaps.
+    // Home sequences start at 0 or 1 and have no gaps.
     bool hasFirst = false;
     for (JointDesign &j : d.joints) {
         j.sequence = !isSequenced && j.sequence > 0 ? 1 : j.sequence;

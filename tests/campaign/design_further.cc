@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Machines whose joints are not axes that plans before the fourth do not have. Every position within the
-// travel of their axes can be reached, with some distance to the limit of their reach and to singular poses.
+// Additional machines whose joints are not axes, used from plan 4 on. Every position within the travel of
+// their axes can be reached, with a distance to the limits of reach and to singular poses.
 #include <algorithm>
 
 #include <fmt/format.h>

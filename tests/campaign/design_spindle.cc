@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Spindles of machines, and the accuracy with which they can be followed.
+// Spindles of machines, and the accuracy with which the tool can follow them.
 #include <algorithm>
 #include <cmath>
 

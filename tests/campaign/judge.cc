@@ -105,7 +105,7 @@ double Judge::time_to_correct() const {
         const bool isOfPath = !d.isAngular && design_.jerk > 0 && (d.jerk <= 0 || design_.jerk < d.jerk);
         const double jerk = isOfPath ? design_.jerk : d.jerk;
         const bool hasJerk = design_.isJerkLimited && jerk > 0 && way > 0;
-        // With half of the limits.
+        // Corrections may use half of the limits.
         most = std::max(most, 2 * std::sqrt(2 * way / d.acceleration) + 2 * way / d.velocity +
                                   (hasJerk ? 2.5 * d.acceleration / jerk : 0));
     }

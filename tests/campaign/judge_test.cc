@@ -13,7 +13,7 @@ namespace {
 
 constexpr double T = 1e-3;
 
-/// One joint of X, on and homed, at rest at 0.
+/// One joint of X, on and homed, stopped at 0.
 class JudgeTest : public ::testing::Test {
   protected:
     JudgeTest() {
@@ -250,8 +250,8 @@ TEST(StopBound, WithJerkAnAccelerationThatRisesComesDownFirst) {
         return std::vector<double>{0, (v - a * T) * T, (2 * v - a * T) * T};
     };
     EXPECT_NEAR(least_stop_with_jerk(moving(10, 0), J, T), 2 * std::sqrt(10 / J), 1e-9);
-    // The acceleration has fallen to zero after 0.1 s, at 15/s; half of that speed is lost after sqrt(15 /
-    // J), the other half takes the same time.
+    // The acceleration has fallen to zero after 0.1 s, at 15/s. Half of that speed is lost after sqrt(15 /
+    // J); the other half takes the same time.
     EXPECT_NEAR(least_stop_with_jerk(moving(10, 100), J, T), 0.1 + 2 * std::sqrt(15 / J), 1e-9);
     EXPECT_NEAR(least_stop_with_jerk(moving(-10, -100), J, T), 0.1 + 2 * std::sqrt(15 / J), 1e-9);
     // The duration of a stop from 15/s that began 0.1 s ago.

@@ -46,7 +46,8 @@ struct MachinePins {
     volatile bool *is_offset_limited, *input;
     std::vector<volatile bool *> outputs;  ///< amplifiers that are able to move
 
-    /// The name of a missing pin; empty when all exist. HAL files have been run, and links move pins.
+    /// Returns the name of a missing pin; empty if all exist. Call it after the HAL files, because links
+    /// change the addresses of pins.
     std::string bind(hal::Instance &hal, std::size_t num_joints);
 };
 

@@ -38,7 +38,7 @@ enum class Sync {
 struct SyncWish {
     Sync kind = Sync::NONE;
     double lead = 0;          ///< [unit/turn]; SURFACE: [m/min]
-    double from = 0, to = 0;  ///< along Z; SURFACE: along X
+    double from = 0, to = 0;  ///< along Z; for SURFACE along X
     double rpm = 0;           ///< with its sign; SURFACE: the maximum
     int passes = 0;           ///< minimum
     bool isShort = false;     ///< too short to reach its speed

@@ -125,7 +125,7 @@ Act Writer::write_in_step() {
             }
         }
         if (kind == 0 && !design_.isTrivial) {
-            kind = 3;  // threads of these plans are driven by time
+            kind = 3;  // threads of these plans have a time limit only
         }
         const double v = sync.lead * std::abs(sync.rpm) / 60;
         const double overrun = isTap ? sync.lead * turns_s * (turns_s / design_.spindle.ramp + 0.04) : 0;
@@ -141,8 +141,8 @@ Act Writer::write_in_step() {
         const double far = middle - side * std::min(std::abs(sync.from - middle), 0.9 * room);
         sync.from = fits ? sync.from : to_grid(far);
         sync.to = fits ? sync.to : to_grid(sync.from + side * 0.1);
-        // Too short for the speed or for the spindle; a feed per revolution may be short. With little travel,
-        // a move that is too short may still be slow enough.
+        // The move is too short for the speed or for the spindle; a feed per revolution may be short. With
+        // little travel, a move that is too short may still be slow enough.
         act.isToFail = !fits && kind != 3 && design_.isTrivial;
         act.mayFail = isSudden || !isPlainZ || (!fits && !design_.isTrivial);
         sync.isShort = !fits;

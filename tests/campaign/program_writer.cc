@@ -100,7 +100,7 @@ void Writer::output() {
     }
 }
 
-/// A position within the soft limits, with some clearance for the joints of other kinematics.
+/// A position within the soft limits, with clearance for the joints of other kinematics.
 double Writer::place(const AxisDesign &a) {
     if (a.low > 0 || a.high < 0) {
         return to_grid(a.low + random_.real(0.05, 0.95) * (a.high - a.low));

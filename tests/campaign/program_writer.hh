@@ -9,7 +9,7 @@
 
 namespace mw::campaign {
 
-/// Programs have this number of digits.
+/// Rounds to the number of digits in programs.
 double to_grid(double x);
 
 class Writer {

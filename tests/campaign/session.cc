@@ -157,10 +157,10 @@ bool Session::set_mode(messages::Mode mode) {
     return end == End::DONE;
 }
 
-/// Motors that are switched off at speed coast. Switching on while they coast may cause following errors: no
-/// drive stops them immediately.
+/// Motors coast when they are switched off at speed. Switching on while they coast may cause following
+/// errors, because no drive stops them immediately.
 void Session::await_slides() {
-    constexpr double STANDING = 1e-3, MOST_S = 20;  // a count, as motion has read it
+    constexpr double STANDING = 1e-3, MOST_S = 20;  // an encoder count, as read by motion
     int calm = 0;
     for (double t = 0; calm < 20 && t < MOST_S && !isOver(); t += PERIOD_S) {
         const std::vector<JointSample> before = rig_->sample().joints;

@@ -154,7 +154,7 @@ void Session::check_program(const Act &act, const geometry::Pose &from, double t
         return;
     }
     if (isReversed_) {
-        return;  // it has moved back and forth
+        return;  // it has moved back and forth, so it is not checked
     }
     double longest = 0;
     double length = 0;

@@ -9,24 +9,24 @@
 
 namespace mw::campaign {
 
-/// Coordinates whose norm has a limit of acceleration: one joint, one axis, or X Y Z together.
+/// Coordinates whose norm has an acceleration limit: one joint, one axis, or X Y Z together.
 struct StoppingGroup {
     std::vector<std::vector<double>> places;  ///< of each coordinate, at every sample [unit]
     double acceleration = 0;                  ///< [unit/s^2]; a larger acceleration of the original motion
                                               ///< counts as allowed
 };
 
-/// Time from the third sample to rest [s], from the speed at that sample. The groups have equal numbers of
-/// samples. `isOver` is false if the path ends before such a stop.
+/// Minimum time from the third sample to standstill [s], from the speed at that sample. The groups have equal
+/// numbers of samples. `isOver` is false if the path ends before such a stop.
 struct LeastStop {
     double seconds = 0;
     bool isOver = false;
 };
 LeastStop least_stop(const std::vector<StoppingGroup> &groups, double period_s);
 
-/// Seconds that a coordinate needs at least whose jerk is at most `jerk` [unit/s^3], by the speed and
-/// acceleration that it has at the third of its samples and with no other limit: a / J, and 2 sqrt(v / J)
-/// from the speed that it has by then. 0 where there is no limit of jerk.
+/// Minimum time [s] in which a coordinate with a jerk limit `jerk` [unit/s^3] stops from the speed and
+/// acceleration at the third sample, without other limits: a / J, and 2 sqrt(v / J) for the speed that it
+/// then has. 0 without a jerk limit.
 double least_stop_with_jerk(const std::vector<double> &places, double jerk, double period_s);
 
 }  // namespace mw::campaign

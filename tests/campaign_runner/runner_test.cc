@@ -42,7 +42,7 @@ TEST(Kept, ShrinkingLeavesWhatFails) {
     EXPECT_LE(parts[0].to - parts[0].from, 2U) << best;
 }
 
-/// Seed 3 breaks a rule, 4 crashes, 5 hangs.
+/// Seed 3 breaks a rule, seed 4 crashes, seed 5 hangs.
 class Made final : public Campaign {
   public:
     std::string name() const override { return "made"; }

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs the outside conformance cases against the programs just built.
+"""Runs the external conformance cases with the programs of the build.
 
 usage: run.py BIN ONLY KNOWN
 
-BIN is the folder of programs, ONLY the part of the cases (rs274 or halrun), KNOWN a file with the cases that do not pass
-yet, one id a line. A case that fails and is not in KNOWN is an error, and so is one that passes and is: the list may
-only shrink. The cases are found at $MILLWRIGHT_CONFORMANCE or in ../shared/conformance beside the checkout; without
-them the exit status is 77, which means skipped.
+BIN is the folder of programs, ONLY the part of the cases (rs274 or halrun), KNOWN a file with the ids of cases that do not pass
+yet, one per line. A case that fails and is not in KNOWN is an error, and so is a case of KNOWN that passes: the list may only
+shrink. The cases are in $MILLWRIGHT_CONFORMANCE, or in ../shared/conformance beside the checkout. Without cases the exit status
+is 77 (skipped).
 """
 import os
 import pathlib

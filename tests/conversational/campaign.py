@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Random forms of conversational programming: programs that the interpreter accepts, and that cut what the form describes without
-danger; impossible values are rejected at their field.
+"""Random forms of conversational programming: the interpreter must accept the programs, they must cut the described shape without
+danger, and impossible values must be rejected at their field.
 
 usage: campaign.py --rs274 FILE [--machine mill|lathe] [--first S] [--count N] [--keep FOLDER] [--processes P]
-The exit status is 1 where anything fails; each failure prints its seed. --keep writes the programs of failures.
+Exit status 1: a form failed; each failure prints its seed. --keep writes the programs of failures.
 """
 import argparse
 import collections
@@ -27,7 +27,7 @@ PIECE = 250
 
 
 def answers_of(made):
-    """Answers of the forms; null is a number that was not entered."""
+    """Answers of the forms; null: a number was not entered."""
     lines = ''.join(json.dumps({key: case[key] for key in ('job', 'facts', 'dxf')}) + '\n' for case in made)
     done = subprocess.run(['node', str(MAKER)], input=lines, capture_output=True, text=True, timeout=300, check=False)
     if done.returncode != 0:

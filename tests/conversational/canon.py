@@ -38,7 +38,7 @@ class Run:
 
 
 def write_tables(folder, tools):
-    """A tool table without lengths, and offsets that put Z 0 of the machine far above the part in all systems."""
+    """A tool table without lengths, and offsets that put machine Z 0 far above the part in all systems."""
     folder = pathlib.Path(folder)
     (folder / 'tools.tbl').write_text(''.join(f'T{number} P{number} D{diameter:.6f}\n' for number, diameter in sorted(tools.items())))
     lines = []
@@ -132,7 +132,7 @@ class Reader:
             self.run.coolant = 'on' if self.flood or self.mist else 'off'
 
     def turned_arc(self, values):
-        """In the plane of Z and X, as short lines."""
+        """An arc in the ZX plane, as short lines."""
         z, x, cz, cx, rotation = values[:5]
         a, b = math.atan2(self.at[0] - cx, self.at[2] - cz), math.atan2(x - cx, z - cz)
         sweep = (b - a) % (2 * math.pi) if rotation > 0 else -((a - b) % (2 * math.pi))

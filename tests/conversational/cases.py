@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Random forms. `good` ones must be accepted, except where a contour has no space for the tool; in `planted` ones one value is
-impossible and has to be rejected at its field; `wild` ones have values of any size, and whatever is accepted must be safe."""
+"""Random forms. `good` forms must be accepted, unless a contour has no space for the tool. In `planted` forms one value is
+impossible and must be rejected at its field. `wild` forms have values of any size; any accepted program must be safe."""
 import math
 import random
 
@@ -218,7 +218,7 @@ def make(seed):
 
 
 def plant(case, maker):
-    """One value becomes impossible; `expect` names the fields at one of which it must be rejected."""
+    """Makes one value impossible; `expect` contains the fields at one of which it must be rejected."""
     r, job = maker.random, case['job']
     step = job['steps'][0]
     v, kind = step['values'], step['type']

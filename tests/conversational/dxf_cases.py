@@ -3,7 +3,7 @@
 import math
 
 UNITS = {'mm': 4, 'inch': 1}
-# Lengths of noise are in the unit of the drawing.
+# Noise is added in the unit of the drawing.
 UNIT_NOISE = [1.0]
 
 
@@ -71,7 +71,7 @@ def rounded(r, layer, centre, d):
 
 
 def rounded_lines(r, layer, centre, d):
-    """Writes separate lines and arcs with small gaps between their ends, like drawing programs."""
+    """Writes separate lines and arcs with small gaps between their ends, as drawing programs do."""
     _, pieces, _ = corners(r, centre, d)
     noise = r.choice([0.0, 5e-5, 4e-4]) * UNIT_NOISE[0]
     near = lambda value: value + r.uniform(-noise, noise)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares the moves of one operation with the values of its form: no dangerous move, and the shape of the drawing."""
+"""Compares the moves of one operation with the values of its form: no dangerous moves, and the described shape."""
 import math
 
 import numpy as np
@@ -31,7 +31,7 @@ def hole_positions(v):
 
 
 def removal(kind, v, pieces, unit):
-    """(low, high, function of x and y that is negative where material is to be removed)."""
+    """(low, high, function of x and y that is negative where material must be removed)."""
     d = v['diameter']
     if kind == 'face':
         x = v['x'] if v['origin'] == 'corner' else v['x'] - v['length'] / 2
@@ -104,7 +104,7 @@ def states(kind, v, moves, faults):
 
 
 def turning(moves, bottom, slack):
-    """Twice the area that the cuts at the bottom sweep around their middle, anticlockwise positive."""
+    """Twice the area that the cuts at the bottom enclose, positive for counter-clockwise."""
     cuts = [move for move in moves if move.kind in ('feed', 'arc') and max(move.start[2], move.end[2]) < bottom + slack]
     ends = [p for move in cuts for p in (move.start, move.end)]
     x, y = ((min(p[k] for p in ends) + max(p[k] for p in ends)) / 2 for k in (0, 1)) if ends else (0.0, 0.0)
@@ -131,7 +131,7 @@ def direction_faults(kind, v, moves, slack):
 
 
 def judge_operation(kind, v, moves, unit, pieces=None, pitches=None):
-    """The faults that were found, as texts, and figures."""
+    """The detected faults as texts, and figures."""
     faults = []
     states(kind, v, moves, faults)
     faults += direction_faults(kind, v, moves, SLACK[unit])

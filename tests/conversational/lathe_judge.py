@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Turns a bar by the moves of a lathe operation and compares it with the form. The bar is a radius for each Z; of a bore, the radius of
-the hole. The tool is its nose with the cutting edge beside it, or a rectangle."""
+"""Turns a bar with the moves of a lathe operation and compares it with the form. The bar is a radius for each Z; for a bore, the
+radius of the hole. The tool is a nose with the cutting edge beside it, or a rectangle."""
 import math
 
 import numpy as np
@@ -54,7 +54,7 @@ class Judge:
     def follow(self, moves):
         for move in moves:
             length = math.hypot(move.end[0] - move.start[0], move.end[2] - move.start[2])
-            # Between two positions of the nose a cusp is left.
+            # A cusp remains between two positions of the nose.
             step = self.v['tool_width'] / 4 if self.kind in WIDE else max(min(self.v['nose'] / 10, math.sqrt(4 * self.v['nose'] * self.bar.slack)) if move.kind != 'rapid' else self.v['nose'] / 2, self.bar.cell / 4)
             count = min(max(1, math.ceil(length / step)), 2000)
             for i in range(count + 1):

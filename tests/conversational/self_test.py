@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The judge of the campaign finds planted faults: a good program is changed, and the judge has to reject it.
+"""Checks that the judge of the campaign detects faults: a good program is changed, and the judge must reject it.
 
 usage: self_test.py --rs274 FILE [--count N]
 """
@@ -42,7 +42,7 @@ def without_spindle(program, v):
 
 
 def plunged(program, v):
-    """The first move into the material goes straight down."""
+    """Changes the first move into the material to a straight plunge."""
     lines, isDone = [], False
     for line in program.splitlines():
         found = re.match(r'G[13] .*?Z(-?[\d.]+)', line)

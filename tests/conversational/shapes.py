@@ -45,7 +45,7 @@ def curve_distance(x, y, pieces):
 
 
 def polygon_of(pieces):
-    """Points along pieces that follow each other; an arc is followed from the point before."""
+    """Points along connected pieces; an arc is divided from its start point."""
     points = []
     for one in pieces:
         if one[0] == 'line':

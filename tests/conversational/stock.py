@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A block of material as a map of heights, cut by a flat tool parallel to Z. It finds rapid moves in material, cuts that are too deep
-at once, and plunges. A cell counts as cut where the tool passes over its centre: distances are exact, whatever the size of a cell. Probes lie close to walls."""
+"""A block of material as a height map, cut by a flat tool parallel to Z. It detects rapid moves in material, cuts that are too
+deep, and plunges. A cell counts as cut when the tool passes over its centre, so distances are exact whatever the cell size. Probe
+points lie close to walls."""
 import math
 
 import numpy as np
@@ -41,7 +42,7 @@ class Stock:
         self.probe_height = np.full(order.shape, float(self.top))
 
     def under(self, move_from, move_to, radius, centre=None, sweep=0.0):
-        """Heights of cells and of probes near a move, each with the mask of those that the tool passes over."""
+        """Heights of cells and probe points near a move, each with a mask of those that the tool passes over."""
         if centre is None:
             low = (min(move_from[0], move_to[0]) - radius, min(move_from[1], move_to[1]) - radius)
             high = (max(move_from[0], move_to[0]) + radius, max(move_from[1], move_to[1]) + radius)
@@ -77,8 +78,8 @@ def arc_distance(x, y, a, b, centre, sweep):
 
 
 class Judge:
-    """Follows moves through a stock. `rules`: step (deepest cut), slope (steepest entry; None: plunges are allowed), level (lowest Z of
-    rapid moves along X and Y), slack (of lengths)."""
+    """Follows moves through a stock. `rules`: step (maximum cut), slope (maximum entry angle; None: plunges are allowed), level
+    (minimum Z of rapid moves along X and Y), slack (of lengths)."""
 
     def __init__(self, stock, radius, rules):
         self.stock, self.radius, self.rules = stock, radius, rules

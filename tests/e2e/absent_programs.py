@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Each program and module of LinuxCNC 2.9 that we do not have reports this when a configuration calls it, with a replacement.
+"""Programs and modules of LinuxCNC 2.9 that Millwright does not have report this when a configuration calls them, and name a
+replacement.
 
 usage: absent_programs.py BIN_FOLDER MODULE_FOLDER
 """
@@ -11,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-# The programs that its package installs in /usr/bin, and its realtime modules that we do not have.
+# Programs that LinuxCNC's package installs in /usr/bin, and realtime modules, that Millwright does not have.
 PROGRAMS = '''5axisgui axis axis-remote classicladder debuglevel elbpcom genserkins gladevcp gladevcp_demo gmoccapy gremlin_view gs2_vfd
 gscreen hal-histogram hal_input hal_manualtoolchange halcmd halcmd_twopass halcompile halmeter halreport halrmt halrun halsampler halscope
 halshow halstreamer haltcl halui hbmgui hexagui hy_gt_vfd hy_vfd image-to-gcode inivar io iov2 latency-histogram latency-plot latency-test
@@ -31,7 +32,7 @@ def main():
     asked = [f'loadusr {name}' for name in absent] + [f'loadrt {name}' for name in MODULES if not (modules / f'{name}.so').exists()]
     failed = 0
     with tempfile.TemporaryDirectory(prefix='mw_absent_') as folder:
-        # No program of an installed LinuxCNC is found, so none is started.
+        # No program of an installed LinuxCNC is in the path, so none is started.
         env = {**os.environ, 'PATH': str(programs), 'MILLWRIGHT_INSTANCE': f'absent-{os.getpid()}', 'LC_ALL': 'C'}
         file = pathlib.Path(folder, 'absent.hal')
         file.write_text('\n'.join(asked) + '\n')

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Programs as CAM systems post them run to their end in virtual time on machines that have no more axes than they need.
+"""Runs CAM programs to their end in virtual time on machines with only the axes that they need.
 
 usage: cam_runs.py MILLWRIGHT SOURCE_FOLDER [--first SEED] [--count N] [--log FILE]
-Each program of tools/cam_programs.py runs on a machine of its own axes (X Z, X Y, X Y Z, X Y Z A, X Y Z A C; inch or mm) and
-must end where its last words say, with the tool offset that is in force, and with no warning.
-A log holds one line per program, its number and verdict; a run with the same log goes on where that one was stopped.
+Each program of tools/cam_programs.py runs on a machine with its axes (X Z, X Y, X Y Z, X Y Z A, X Y Z A C; inch or mm). It must
+end at its last programmed position, with the active tool offset, and without a warning.
+The log has one line per program with its number and verdict. A run with the same log continues after the last line.
 """
 import argparse
 import contextlib
@@ -15,7 +15,7 @@ import subprocess
 import sys
 import tempfile
 
-PRINTED = 2e-6  # of the trace, and of a program's rounding to inches
+PRINTED = 2e-6  # resolution of the trace, and rounding of a program in inches
 OFFSETS = {1: {'Z': 10.0}, 2: {'Z': 20.5}}
 LATHE_OFFSETS = {1: {'X': 3.0, 'Z': 10.0}, 2: {'X': 4.5, 'Z': 12.0}}
 

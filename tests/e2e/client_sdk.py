@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Installs the client library into an empty folder and builds examples/nml_client against it, by pkg-config and by CMake,
-outside of the tree; both programs send EMC_IO_GENERIC to another process.
+"""Installs the client library into an empty folder and builds examples/nml_client with it, with pkg-config and with CMake,
+outside the tree. Both programs send EMC_IO_GENERIC to another process.
 
 usage: client_sdk.py BUILD SOURCE
 """

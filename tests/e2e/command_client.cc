@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A client that switches a machine on, homes it and moves it, and says how long its commands took; through
-// NML channels (the configuration says where they are) or through the mailbox of a machine on this computer.
+// A client that switches a machine on, homes it, moves it, and reports the duration of its commands. It uses
+// NML channels (of the configuration) or the mailbox of a machine on this computer.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`millwright commission check` and `report` with an operator who answers by lines (A7). usage: commission.py MILLWRIGHT"""
+"""Runs `millwright commission check` and `report` with an operator who answers in lines (A7). usage: commission.py MILLWRIGHT"""
 import pathlib
 import re
 import subprocess

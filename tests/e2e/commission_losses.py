@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The steps of commissioning in real time with a simulated board lose their program, their operator or their reader in the middle of a motion (A7): the
-drive must be off afterwards. usage: commission_losses.py MILLWRIGHT HALCMD"""
+"""The commissioning steps run in real time with a simulated board. The program, the operator or the reader is lost during a
+motion (A7): the drive must be off afterwards. usage: commission_losses.py MILLWRIGHT HALCMD"""
 import json
 import os
 import pathlib

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A program in C that was linked elsewhere, and asks for liblinuxcnchal.so.0 and liblinuxcncini.so.0, runs on our HAL as it is (B5).
+"""A C program that was linked elsewhere and needs liblinuxcnchal.so.0 and liblinuxcncini.so.0 runs unmodified on Millwright's HAL
+(B5).
 
-It is compiled against our headers and linked to empty libraries of these names, so that nothing of it knows ours.
+It is compiled with Millwright's headers and linked to empty libraries of these names.
 
 usage: compiled_programs.py BUILD_FOLDER
 """

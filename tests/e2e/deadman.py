@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The judge of jogs by lease: a client of `millwright ui` jogs and is cut, silent or killed at a moment drawn by a seed. The
-joint must decelerate within 110 ms of the last renewal that the machine was given, and stand; a jog that is not cut does not stutter.
+"""Checks jogs with a lease: a client of `millwright ui` jogs and is disconnected, silent or killed at a random time. The joint
+must decelerate within 110 ms of the last renewal that the machine received, and stop; other jogs must not stutter.
 
-What moved when is told by joint_watch.py.
+joint_watch.py reports the motion.
 
 usage: deadman.py MILLWRIGHT HALCMD ROOT [--cuts N] [--seed S] [--slack-ms MS] [--log FILE]
-slack: of a computer that does other things. log: a line of JSON for each cut; a campaign that was cut short goes on behind its last line.
+slack: additional time for a busy computer. log: a line of JSON for each cut. An interrupted campaign continues after the last
+line.
 """
 import argparse
 import json
@@ -42,7 +43,7 @@ def jogger(port, sign, pipe, style):
         screen.ask('JogContinuous', is_renewal=True, **fields)
         last = time.monotonic()
     end = pipe.recv()
-    # the process may be waiting for the answer to its last renewal, from which the lease counts
+    # the process may be waiting for the answer to its last renewal, which starts the lease
     if style == 'silent':
         number = screen.last_id
         screen.until(lambda: number in screen.outcomes, 0.09)
@@ -54,7 +55,7 @@ def jogger(port, sign, pipe, style):
         screen.ask('JogStop', is_joint=False, index=0)
         last = time.monotonic()
     if end == 'silent' or style == 'killed':
-        time.sleep(10)  # open and silent, or killed meanwhile
+        time.sleep(10)  # connected and silent, or killed in this time
 
 
 def one_cut(watch, port, chance, number, slack):
@@ -125,7 +126,7 @@ def judge(bench, cuts, seed, slack, log):
     for number in range(cuts):
         if number in done:
             continue
-        watch.samples = watch.samples[-1:]  # a motion that begins at once is seen only in a later sample, too
+        watch.samples = watch.samples[-1:]  # a motion that starts at once is seen only in a later sample
         found = len(FOUND.failures)
         result = one_cut(watch, port, random.Random(f'{seed} {number}'), number, slack)
         if log is not None:

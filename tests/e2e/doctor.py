@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""millwright doctor says nothing against our own machines, and finds each of many damages where it was done.
+"""millwright doctor reports nothing about our machines, and reports each of many faults at its position.
 
 usage: doctor.py MILLWRIGHT ROOT [--seed N] [--typing-errors N]
 
-A damage is one changed, added or removed line of a good configuration; a finding must name its line. Typing errors are
-made in keys that are chosen by the seed.
+A fault is one changed, added or removed line of a correct configuration; a finding must name its line. The seed selects keys for
+typing errors.
 """
 import argparse
 import pathlib
@@ -18,7 +18,7 @@ import tempfile
 
 
 class Files:
-    """A copy of the mill, and the line that was damaged."""
+    """A copy of the mill, and the damaged line."""
 
     def __init__(self, root, place):
         self.folder = pathlib.Path(place) / 'configs/sim'
@@ -165,7 +165,7 @@ def main():
             what = f'{key} written {wrong}'
             hits = [line for line in told if wrong in line and files.line in line] or [line for line in told if 'misspelling' in line and wrong in line]
         else:
-            # Where two lines contradict each other, the finding may name either.
+            # If two lines contradict each other, the finding may name either of them.
             hits = [line for line in told if (text or '') in line and (text is None or not files.line or files.line in line or 'mill_mm.ini' in line)]
         if hits:
             found += 1

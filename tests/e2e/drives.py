@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""gs2_vfd and vfdb_vfd against drives that this file simulates: registers on a pseudo-terminal, and a motor behind them.
+"""Runs gs2_vfd and vfdb_vfd with drives that this file simulates: registers on a pseudo-terminal, with a motor.
 
 usage: drives.py BIN_FOLDER
 """
@@ -65,7 +65,7 @@ class Vfdb(Drive):
 
 
 class Hal:
-    """A HAL with the component, for the duration of `with`."""
+    """A HAL with the component inside a `with` statement."""
 
     def __init__(self, programs, folder, drive, program, words):
         self.programs, self.folder = programs, folder

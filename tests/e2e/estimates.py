@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The planner's estimate of the time of a program is its actual time.
+"""Compares the planner's time estimate of programs with the actual time.
 
 usage: estimates.py MILLWRIGHT SOURCE_FOLDER
 Each program of nc_files runs on its machine, without jerk limits and with 10 times the accelerations.

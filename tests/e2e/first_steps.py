@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""New machines of `millwright setup`: each kind, simulated and stepper, in mm and inch, starts and runs its first program.
+"""Tests new machines of `millwright setup`: each type, simulated and stepper, in mm and inch, starts and runs its first program.
 
 usage: first_steps.py MILLWRIGHT
 
-What the machine does is judged by others than itself: limits and scales as Python reads the INI file, the way from the
-trace of the run, and the pulses at the pins of the simulated port, counted by components that are put beside it.
+Independent checks: limits and scales as Python reads the INI file, the path from the trace of the run, and the pulses at the pins
+of the simulated port, counted by separate components.
 """
 import configparser
 import csv
@@ -79,7 +79,7 @@ def check_way(bench, what, ini, trace, axes):
 
 
 def check_pulses(bench, what, ini, last, output, joints):
-    """From the start of the motor to its end: its travel since homing, and the position at which it was homed."""
+    """From the motor position at the start to that at the end: its travel since homing, and the position at which it was homed."""
     counts = [int(number) for number in re.findall(r'steps (-?\d+)', output)]
     bench.expect(len(counts) == joints, f'{what}: {joints} counts', output)
     for joint, count in enumerate(counts):

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""millwright format changes no program's canon output, and nothing the second time.
+"""millwright format does not change the canon output of any program, and changes nothing the second time.
 
 usage: format_keeps_meaning.py RS274 MILLWRIGHT SOURCE_FOLDER [NUMBER_OF_PROGRAMS [FOLDER_OF_CASES ...]]
-Programs: seeded ones, those of nc_files, and all of further folders; each runs beside its formatted form.
+Programs: generated from seeds, those of nc_files, and all of further folders. Each is compared with its formatted version.
 """
 import pathlib
 import subprocess
@@ -19,7 +19,7 @@ import interp_programs  # noqa: E402
 
 def output(program, folder):
     done = subprocess.run([RS274, '-g', str(program)], cwd=folder, capture_output=True, timeout=60, check=False)
-    # Messages quote the block, which is formatted differently: the position counts, not the second line.
+    # Messages quote the block, which is formatted differently, so only the position is compared.
     return done.stdout, done.returncode, done.stderr.splitlines()[-2:-1]
 
 

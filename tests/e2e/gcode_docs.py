@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every example of docs/user/gcode gives the output beside it, and every code of the interpreter has an entry (I1).
+"""Checks that each example of docs/user/gcode gives the output beside it, and that every code of the interpreter has an entry
+(I1).
 
-usage: gcode_docs.py RS274 SOURCE_FOLDER [--update]    --update writes what comes out into the files: read the difference
+usage: gcode_docs.py RS274 SOURCE_FOLDER [--update]    --update writes the actual output into the files: check the difference
 """
 import pathlib
 import re
@@ -20,7 +21,7 @@ HEIGHT = 7.5
 [RS274NGC]
 SUBROUTINE_PATH = .
 '''
-MM = 1 / 25.4  # rs274 takes tables as inches
+MM = 1 / 25.4  # rs274 reads tool tables in inches
 TOOLS = (f'T1 P1 Z{20 * MM:.9f} D{6 * MM:.9f}\nT2 P2 Z{35.5 * MM:.9f} D{10 * MM:.9f}\n'
          f'T3 P3 X{12 * MM:.9f} Z{5 * MM:.9f} D{0.8 * MM:.9f} I85 J5 Q2\n')
 BLOCK = re.compile(r'```ngc( whole)?\n(.*?)```\n```(canon|error)\n(.*?)```\n', re.S)
@@ -45,7 +46,7 @@ class Runner:
 
     @staticmethod
     def end_length(calls):
-        """The number of calls that M2 has made."""
+        """The number of calls that M2 makes."""
         starts = [i for i, call in enumerate(calls) if call.startswith('SET_G5X_OFFSET(1,')]
         return len(calls) - starts[-1] if starts and 'PROGRAM_END()' in calls else 0
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""HAL files in two passes and in Tcl, on a simulated machine.
+"""Tests HAL files in two passes and in Tcl, on a simulated machine.
 
-usage: hal_files.py MILLWRIGHT SOURCE_FOLDER [tcl]    tcl: the Tcl part has been built
+usage: hal_files.py MILLWRIGHT SOURCE_FOLDER [tcl]    tcl: the Tcl part was built
 """
 import os
 import pathlib
@@ -13,7 +13,7 @@ import tempfile
 
 PROGRAM = 'G21 G90 G0 X10 Y5\nG1 X20 F600\nM2\n'
 FILES = {
-    # A module that core_sim.hal loads too: only two passes can merge the lines.
+    # A module that core_sim.hal also loads: only two passes can merge the lines.
     'more.hal': 'loadrt ddt names=extra\naddf extra servo-thread\nnet extra-in joint.0.pos-fb => extra.in\n',
     'twice.hal': 'loadrt ddt names=extra\n',
     'wrong.hal': 'loadrt ddt names=more\nnet nothing more.oot\n',
@@ -48,7 +48,7 @@ def main():
             ini = machine / 'case.ini'
             ini.write_text(plain.replace('[HAL]\n', '[HAL]\n' + two_pass).replace(
                 'HALFILE = spindle_sim.hal\n', 'HALFILE = spindle_sim.hal\n' + hal_lines))
-            # Until the end of its output, which a program of loadusr that is left running would keep open.
+            # Waits for the end of its output, which a remaining loadusr program would keep open.
             done = subprocess.run([millwright, 'run', str(ini), str(machine / 'part.ngc'), *mode], capture_output=True,
                                   env=dict(os.environ, MILLWRIGHT_INSTANCE=f'hal-files-{os.getpid()}'), cwd=folder,
                                   text=True, check=False, timeout=60)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Each HAL file of our library does on a small machine what its first lines say.
+"""Tests that each HAL file of our library does on a small machine what its header states.
 
 usage: hallib.py MILLWRIGHT ROOT
 """
@@ -97,7 +97,7 @@ def main():
                 'G90 G1 F3000 X20\nM66 P0 L0\n(DEBUG, under #<_hal[limits_x.under]> over #<_hal[limits_x.over]>)', 'under 0.*over 0')
     servo = 'PGAIN = 50\nIGAIN = 0\nDGAIN = 0\nBIAS = 0\nFF0 = 0\nFF1 = 1\nFF2 = 0\nDEADBAND = 0\n'
     library.run('servo_sim follows', ['LIB:servo_sim.hal'], MOVE, 'cycle time', servo=servo)
-    # Steps of simulated motors at the pins of a simulated port.
+    # Steps of simulated motors on the pins of a simulated port.
     stepper = dict(motmod='\nBASE_PERIOD = 50000', servo='SCALE = 100\nSTEPGEN_MAXACCEL = 1200\n',
                    hal='loadrt hal_parport backend=simulated cfg="0x378 out"\naddf parport.0.write base-thread\nnet Xdir => parport.0.pin-02-out\n'
                        'net Xstep => parport.0.pin-03-out\nnet estop-loop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in\n'

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Each program and each command of millwright answers --help on standard output with status 0; completion knows all options.
+"""Tests that each program and each command of millwright answers --help on standard output with status 0, and that the completion
+knows all options.
 
 usage: help.py BIN_FOLDER ROOT
 """

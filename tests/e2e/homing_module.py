@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The example of a homing module, built by halcompile, homes a machine in virtual time; modules that are none are refused.
+"""The homing module example, built by halcompile, homes a machine in virtual time. Modules without homing functions are rejected.
 
 usage: homing_module.py BIN_FOLDER SOURCE_FOLDER
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""An installation in a folder of its own works from an empty environment: run in both clocks, halrun, halcompile, Python.
+"""An installation in a separate folder works with an empty environment: run in both clocks, halrun, halcompile, Python.
 
 usage: installed.py CMAKE BUILD_FOLDER SOURCE_FOLDER
 """

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the X axis of a running machine is and when, by the servo thread's own time, for judges of jogs: a computer whose servo thread
-comes late is not taken for a jog that runs on. Nothing of the screen, the server or motion is asked.
+"""Reports the X position of a running machine with the servo thread's time, for judges of jogs: a late servo thread must not be
+mistaken for a jog that continues. Uses neither the screen, the server nor motion.
 
-The machine's HAL file loads SERVO_CLOCK. As a program (joint_watch.py LIBRARY): a line "servo-s position monotonic-s" for each sample,
-until standard input ends.
+The machine's HAL file loads SERVO_CLOCK. As a program (joint_watch.py LIBRARY): a line "servo-s position monotonic-s" for each
+sample, until standard input ends.
 """
 import os
 import sys
@@ -16,7 +16,7 @@ SERVO_CLOCK = 'loadrt integ\naddf integ.0 servo-thread\nsetp integ.0.in 1\nnet s
 
 
 class Watch(threading.Thread):
-    """Samples of where the joint is, and when. The stream of halsampler would be exact; HAL itself is asked instead."""
+    """Samples of the joint position and time. The stream of halsampler would be exact; here HAL pins are read."""
 
     def __init__(self, library, env):
         super().__init__(daemon=True)
@@ -37,8 +37,8 @@ class Watch(threading.Thread):
             time.sleep(SAMPLE_S)
 
     def servo_time(self, when):
-        """Position at a time of the computer's clock, between the samples before and after it, which may be far apart on a busy
-        computer."""
+        """Position at a time of the computer's clock, interpolated between the previous and next samples, which may be far apart
+        on a busy computer."""
         before = max((one for one in self.samples if one[2] <= when), key=lambda one: one[2], default=None)
         after = min((one for one in self.samples if one[2] > when), key=lambda one: one[2], default=None)
         if before is None or after is None:
@@ -50,7 +50,7 @@ class Watch(threading.Thread):
 
 
 def last_motion(samples):
-    """Time of the last movement, by the samples."""
+    """Time of the last motion in the samples."""
     moved = [b[0] for a, b in zip(samples, samples[1:]) if abs(b[1] - a[1]) > 1e-7]
     return moved[-1] if moved else None
 
@@ -62,7 +62,7 @@ def begin_of_braking(samples, speed):
 
 
 def stands_still(samples, begin, end):
-    """The longest time without motion between the two. [s]"""
+    """The longest time without motion between two times. [s]"""
     longest, since = 0.0, None
     for a, b in zip(samples, samples[1:]):
         if begin < a[0] and b[0] < end and abs(b[1] - a[1]) < 1e-7:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What people read is in their language, what programs read is not; two clients of one machine have each their own (A8).
+"""Texts for people are in their language, output for programs is not; two clients of one machine have different languages (A8).
 
 usage: language.py BIN_FOLDER ROOT
 """
@@ -62,7 +62,7 @@ def check_programs(programs, root, folder):
 
 
 def check_names_in_path(programs, folder):
-    """A program that is started by its name finds its catalogue, from any folder and with any other entries in PATH."""
+    """A program started by its name finds its catalogue from any folder and with other entries in PATH."""
     (folder / 'elsewhere').mkdir()
     links = folder / 'links'
     links.mkdir()

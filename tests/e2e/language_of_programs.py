@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Help and errors of each installed program are in the language of its user; what programs read has the same bytes everywhere (A8).
+"""Help and errors of each installed program are in the user's language; output for programs has the same bytes in every language
+(A8).
 
 usage: language_of_programs.py BIN_FOLDER
 """
@@ -23,7 +24,7 @@ SPANISH = ({'LANG': 'es_ES.UTF-8'}, {'LC_ALL': 'es', 'LANG': 'de_DE.UTF-8'}, {'L
 ENGLISH = ({}, {'LANG': 'C.UTF-8'}, {'LANG': 'en_GB.UTF-8'}, {'LC_ALL': 'C', 'LANG': 'de_DE.UTF-8'}, {'LANG': 'C.UTF-8', 'LANGUAGE': 'de'})
 # Tools of the build and of tests, which are not installed.
 NOT_INSTALLED = {'reference_pages', 'hal_tcl_test'}
-# English words that occur in the help, and in neither of the other languages.
+# English words that occur in the help and in none of the other languages.
 ENGLISH_WORDS = re.compile(r'\b(the|of|and|with|is|are|which|this|its|from|to|for|usage|not|default|by|other)\b')
 PLACE = re.compile(r'[\w.]+:\d+:\d+: ')
 
@@ -143,7 +144,7 @@ def check_other_errors(programs, folder):
 
 
 def check_scripts(programs, folder):
-    """What programs read has the same bytes in each language."""
+    """Output for programs has the same bytes in each language."""
     (folder / 'prepared.hal').write_text(PREPARED)
     made = run('halcmd -f prepared.hal', {}, folder, programs)
     expect(made == ('', '', 0), 'the HAL is prepared', made)

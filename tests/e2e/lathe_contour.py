@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How near the moves of G70 to G72, as an rs274 prints them, are to the contour that the program asks for.
+"""Measures the distance between the moves of G70 to G72, as an rs274 prints them, and the programmed contour.
 
 usage: lathe_contour.py RS274 [--program FILE | --digits N] [--gouge MM] [--standing MM] [-- WORD...]
-Reads the contour out of the program's first subroutine (G0 to G3 with X, Z, I and K in mm, a fillet A between two lines)
-and the cycles behind it, runs the program with RS274 and measures each cycle: the deepest feed move below the contour plus
-what the cycle leaves (D, or the passes of G70), and how far the passes of G70 stand above it. The contour's arcs whose
-ends do not have the same radius, as rounded numbers give, go evenly from one to the other. Words behind -- are put before
-the command (`-- runuser -u op --`). Without a program: one of its own, with N digits behind the point. Exit status 1 when a measure is above its bound.
+Reads the contour from the program's first subroutine (G0 to G3 with X, Z, I and K in mm, a fillet A between two lines) and the
+cycles after it, runs the program with RS274 and measures each cycle: the deepest feed move below the contour plus the allowance
+of the cycle (D, or the passes of G70), and the distance of the G70 passes above it. Arcs whose ends have different radii, due to
+rounded numbers, change evenly from one radius to the other. Words after -- precede the command (`-- runuser -u op --`). Without a
+program: a built-in one, with N decimals. Exit status 1: a measure exceeds its bound.
 """
 import argparse
 import bisect
@@ -19,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 
-# A turned pin with the roundings of a CAM system: tangent lines and arcs whose numbers have two to four digits.
+# A turned pin with the rounding of a CAM system: tangent lines and arcs whose numbers have two to four decimals.
 PROGRAM = '''G54 G18 G21
 F200
 o200 sub
@@ -93,7 +93,7 @@ class Stroke:
 
 
 def filleted(strokes, fillets):
-    """With an arc of the radius fillets[i] between the lines i and i + 1."""
+    """Inserts an arc of the radius fillets[i] between the lines i and i + 1."""
     out = list(strokes)
     for i, radius in fillets.items():
         before, after = out[i], out[i + 1]

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""mb2hal against a Modbus device that is written here from the protocol's specification, by TCP and by RTU over a pseudo-terminal.
+"""Tests mb2hal with a Modbus device that is written from the protocol specification, over TCP and over RTU on a pseudo-terminal.
 
-usage: mb2hal.py BIN_FOLDER [MB2HAL]       MB2HAL: another program of that name, to compare with
+usage: mb2hal.py BIN_FOLDER [MB2HAL]       MB2HAL: another program of that name, for comparison
 """
 import os
 import pathlib
@@ -98,7 +98,7 @@ NELEMENTS=1
 HAL_TX_NAME=last
 '''
 class Hal:
-    """A HAL with the component, for the duration of `with`."""
+    """A HAL with the component inside a `with` statement."""
 
     def __init__(self, programs, folder, program, link):
         self.programs, self.folder = programs, folder

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Each sample machine with a Mesa board has no finding, homes by its switches and cuts, in virtual time.
+"""Each sample machine with a Mesa board passes doctor, homes to its switches and cuts, in virtual time.
 usage: mesa_samples.py MILLWRIGHT SOURCE_FOLDER"""
 import pathlib
 import subprocess

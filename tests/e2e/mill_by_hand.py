@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the checks of `millwright run` and `millwright start` by the clock share: a copy of a simulated mill whose tools
-are changed by hand, its pins, and what was found wrong."""
+"""Common parts of the realtime checks of `millwright run` and `millwright start`: a copy of a simulated mill with manual tool
+change, its pins, and the findings."""
 import os
 import pathlib
 import shutil

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A Modbus slave, written from the protocol's specification, by TCP and by RTU; the device supplies the answers: answer(slave, request)."""
+"""A Modbus slave, written from the protocol specification, over TCP and RTU. The device supplies the answers: answer(slave,
+request)."""
 import os
 import socket
 import struct

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The form of documents of MTConnect 2.2, as far as the agent uses it: elements, their order, attributes, types and words. Written
-from the facts of the standard (parts 1 to 4); the published schemas are not part of this project."""
+"""The form of documents of MTConnect 2.2, as far as the agent uses it: elements, their order, attributes, types and words.
+Written from the facts of the standard (parts 1 to 4); the published schemas are not part of this project."""
 import re
 import xml.etree.ElementTree as tree
 

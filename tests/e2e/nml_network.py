@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""An NML client on another computer (F9): its own network namespace, which a pair of virtual Ethernet devices joins to that of the
-machine. A program with the client library finds the machine by a configuration that names a remote host; a client made from
-docs/reference/nml.md alone does the same over a bare socket. Nobody gets in where the file says localhost, nor without `millwright nml`; a
-cable that is pulled stops nothing.
+"""An NML client on another computer (F9): a network namespace that a pair of virtual Ethernet devices connects to that of the
+machine. A program with the client library finds the machine with a configuration that names a remote host. A client written only
+from docs/reference/nml.md does the same over a plain socket. Access is impossible if the file names localhost, or without
+`millwright nml`. Pulling the cable does not stop the machine.
 
-All of it in a user namespace of its own, so that nothing of this computer's network is touched. Where the kernel does not allow
-that, it says why and ends with 77.
+Everything runs in a user namespace, so that the network of this computer is not changed. If the kernel does not permit this, the
+test prints the reason and ends with 77.
 
 usage: nml_network.py MILLWRIGHT HALCMD ROOT COMMAND_CLIENT
 """

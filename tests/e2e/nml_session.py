@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`millwright nml` for a machine that `millwright start` keeps up, from the other side of a network (F9): a client made from
-docs/reference/nml.md alone switches on, homes and moves; invalid messages affect no other client; when one process is killed, the others continue.
+"""Tests `millwright nml` with a machine of `millwright start` from across a network (F9): a client written only from
+docs/reference/nml.md switches on, homes and moves; invalid messages do not affect other clients; if one process is killed, the
+others continue.
 
 usage: nml_session.py MILLWRIGHT HALCMD ROOT
 """

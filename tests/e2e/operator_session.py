@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A person at the terminal of `millwright run --realtime`, as a pseudo terminal: asks first, keys answer, stops hold (D3).
+"""A person at the terminal of `millwright run --realtime`, as a pseudo-terminal: it asks before the start, keys answer, and stops
+remain effective (D3).
 
 usage: operator_session.py MILLWRIGHT HALCMD ROOT
 """
@@ -130,7 +131,7 @@ def main():
             os.kill(one.pid, number)
             expect(one.end() == 1 and f'stopped by {number.name}' in one.text, f'{number.name} stops in order', one)
 
-        # While the program is checked before the start, which takes up to 5 s.
+        # The program is checked before the start, which takes up to 5 s.
         mill.write('endless.ngc', 'G21 G90 F600\no1 while [1]\nG1 X10\nG1 X0\no1 endwhile\nM2\n')
         for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGINT):
             one = start('endless.ngc', '--yes')

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The example of a planner module, built by halcompile, drives a machine in virtual time; modules that ask for too much
-stop the path within the limits and are told, modules that are none are refused.
+"""The planner module example, built by halcompile, drives a machine in virtual time. Modules that request too much stop the path
+within the limits and are reported; modules without planner functions are rejected.
 
 usage: planner_module.py BIN_FOLDER SOURCE_FOLDER
 """

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What components print: rtapi_print, from loading and from a realtime function, is on standard output, complete, in order and with
-all conversions of printf; rtapi_print_msg is on standard error. The lines are those that LinuxCNC 2.9 prints.
+"""Output of components: rtapi_print, during loading and in a realtime function, goes to standard output, complete, in order and
+with all conversions of printf; rtapi_print_msg goes to standard error. The expected lines are those of LinuxCNC 2.9.
 
 usage: printed_messages.py BIN_FOLDER
 """

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs a program on a simulated machine twice and compares the traces byte by byte.
+"""Runs a program twice on a simulated machine and compares the traces byte by byte.
 
 usage: programs.py MILLWRIGHT INI PROGRAM
 
-Checks: exit status 0, a summary with the figures people look for, a picture, a trace with the documented header and one
-row per servo cycle, a certificate of motion within limits and tolerances, and that the second run gives the same bytes.
+Checks: exit status 0, a summary with the main figures, a picture, a trace with the documented header and one row per servo cycle,
+a certificate of motion within limits and tolerances, and identical bytes in the second run.
 """
 import json
 import pathlib
@@ -33,7 +33,7 @@ def main():
     millwright, ini, program = sys.argv[1:4]
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        # A copy, so that parameter files are written there and both runs start with the same values.
+        # A copy, so that parameter files are not changed and both runs start with the same values.
         for copy in ('one', 'two'):
             shutil.copytree(pathlib.Path(ini).parents[2], folder / copy, ignore=shutil.ignore_patterns('build', '.git', '*.var', '*.journal*'))
         place = pathlib.Path(ini).relative_to(pathlib.Path(ini).parents[2])

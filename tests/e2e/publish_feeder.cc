@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // publish-feeder STORE PORT FIRST NODE [WINDOW PERIOD_MS]: an edge node of Sparkplug whose machine counts,
-// for tests that kill it, or lose its messages. WINDOW messages at most are on the way. After a number is
-// accepted it is printed. Waits for the primary host "shop".
+// for tests that kill it or lose its messages. At most WINDOW messages are in transit. Prints each accepted
+// number. Waits for the primary host "shop".
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Nothing that the publisher has accepted is lost or doubled while broker, publisher and host application are killed at random
-times, and while the broker hangs. The publisher is publish-feeder, which counts; the key of a value is its metric and its time.
+"""No value that the publisher has accepted is lost or duplicated while broker, publisher and host application are killed at
+random times, and while the broker hangs. The publisher is publish-feeder, which counts; the key of a value is its metric and its
+time.
 
 usage: publish_kills.py FEEDER ROOT [KILLS [SEED]]
 """
@@ -73,8 +74,7 @@ def main():
                     feeder.kill()
                     feeder.start()
                 elif what == 'host':
-                    # As after a kill: the connection ends without a message, and the data in its socket are
-                    # lost.
+                    # As after a kill: the connection ends without a message, and data in its socket are lost.
                     host.client._sock_close()
                     collect()
                     host.client.loop_stop()

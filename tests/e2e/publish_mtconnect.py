@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The MTConnect agent of `millwright publish` for a running mill: the form of every document (mtconnect_forms.py), values that are those
-of HAL, streams that are cut and continued, clients that do not read, the end of the machine.
+"""Tests the MTConnect agent of `millwright publish` for a running mill: the form of every document (mtconnect_forms.py), values
+equal to those of HAL, interrupted and continued streams, clients that do not read, and the end of the machine.
 
 usage: publish_mtconnect.py MILLWRIGHT HALCMD ROOT
 """
@@ -56,7 +56,7 @@ class Agent:
 
 
 class StreamOfParts:
-    """A request with interval=, read part by part."""
+    """A request with interval=, read in parts."""
 
     def __init__(self, agent, path):
         self.agent, self.path = agent, path
@@ -144,7 +144,7 @@ def check_streams(agent, mill):
 
 
 def check_clients_that_do_not_read(agent, mill):
-    """These clients slow down neither the machine nor another client."""
+    """Such clients slow down neither the machine nor other clients."""
     idle = []
     for _ in range(8):
         client = socket.create_connection(('127.0.0.1', agent.port))

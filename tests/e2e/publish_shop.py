@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the checks of `millwright publish` share: a broker (mosquitto), a host application of Sparkplug with a decoder that protoc
-makes from the declaration, and a store whose key is the metric and its time."""
+"""Common parts of the checks of `millwright publish`: a broker (mosquitto), a Sparkplug host application with a decoder that
+protoc generates from the declaration, and a store whose key is the metric and its time."""
 import importlib
 import os
 import pathlib
@@ -79,7 +79,7 @@ def value_of(metric):
 
 
 class Host:
-    """A host application: knows aliases by births, and stores values by (device, metric, time)."""
+    """A host application: learns aliases from births, and stores values by (device, metric, time)."""
 
     def __init__(self, decoder, port, name='', **tls):
         self.decoder, self.name = decoder, name
@@ -148,7 +148,7 @@ class Host:
         elif verb == 'NDEATH':
             return
         elif node not in self.seq:
-            return self.send_rebirth(*node)  # its birth was before our start
+            return self.send_rebirth(*node)  # the node was born before the host started
         else:
             self.seq[node] = (self.seq[node] + 1) % 256
         if payload.seq != self.seq[node]:
@@ -164,7 +164,7 @@ class Host:
         for metric in payload.metrics:
             name = self.aliases.get(device, {}).get(metric.alias)
             if device not in self.aliases:
-                # its birth was before our start: a rebirth is requested, and the value is sent again
+                # the node was born before the host started: a rebirth is requested, and the value is sent again
                 continue
             if name is None:
                 self.problems.append(f'{parts[2]} has the unknown alias {metric.alias}')

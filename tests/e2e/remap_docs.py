@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every example of docs/integrator/remap.md gives the output beside it (I1).
+"""Checks that each example of docs/integrator/remap.md gives the output beside it (I1).
 
-usage: remap_docs.py RS274 SOURCE_FOLDER [--update]    --update writes what comes out into the file: read the difference
+usage: remap_docs.py RS274 SOURCE_FOLDER [--update]    --update writes the actual output into the file: check the difference
 
-In each section the fences `ini`, `python NAME` and `ngc NAME` are files, `program` is run, `canon` is what comes out: calls,
-then the lines of an error.
+In each section the fences `ini`, `python NAME` and `ngc NAME` are files, `program` is run, and `canon` is its output: calls, then
+the lines of an error.
 """
 import pathlib
 import re

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Python and Tcl clients of a machine on another computer (F9): they have their own INI and NML file, whose process xemc is
-REMOTE, and another instance name, so that no shared memory of the machine is in reach. Status, commands with their end, messages,
-the tool table, a jog whose client is killed, a server that goes away, a wrong port, a program that is no NML server.
+"""Python and Tcl clients of a machine on another computer (F9): they have an INI and an NML file whose process xemc is REMOTE,
+and another instance name, so that they cannot use shared memory of the machine. Tests status, commands and their end, messages,
+the tool table, a jog whose client is killed, a server that ends, a wrong port, and a program that is not an NML server.
 
 usage: remote_clients.py MILLWRIGHT HALCMD ROOT PYTHON_FOLDER TCL_FOLDER
 """
@@ -160,7 +160,7 @@ def operate(bench):
 
 
 def killed_jog(bench, path):
-    """A failure of the network during a jog stops the jog."""
+    """A network failure during a jog stops the jog."""
     with bench.start_python(JOG, path) as jogger:
         expect(jogger.stdout.readline() == 'jogs\n', 'it jogs, longer than one lease')
         before = bench.position()

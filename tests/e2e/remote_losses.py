@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Python clients of a machine on another computer (F9) when something fails: two clients at once, a server that stops answering and is
-back, a machine that is started again, a machine that is gone while its server lives.
+"""Failures of Python clients on another computer (F9): two clients at once, a server that stops answering and continues, a
+machine that is restarted, a machine that ends while its server runs.
 
 usage: remote_losses.py MILLWRIGHT HALCMD ROOT PYTHON_FOLDER
 """
@@ -116,7 +116,7 @@ def wait_stopped(pid):
 
 
 def silence(bench, path, server):
-    """A server that does not answer: a command that a client has abandoned is not executed when the server answers again."""
+    """A server that does not answer: a command that its client has abandoned is not executed when the server continues."""
     before = bench.position()
     with bench.client(LOSE, path) as client:
         expect(client.stdout.readline() == 'polls\n', 'it polls')

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`millwright commission write` opens a machine again: edits survive, or are shown as conflicts (A7). usage: rewritten_machine.py MILLWRIGHT"""
+"""`millwright commission write` opens a machine again: edits are kept, or shown as conflicts (A7). usage: rewritten_machine.py
+MILLWRIGHT"""
 import pathlib
 import subprocess
 import sys

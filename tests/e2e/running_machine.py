@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`millwright start` keeps a machine up; `millwright run --realtime` is a client of it (D3, E1).
+"""`millwright start` runs a machine; `millwright run --realtime` is its client (D3, E1).
 
-Whichever process is killed or stopped, each check tests that the machine is safe and that the work continues.
+When any process is killed or stopped, the machine must be safe and the work must continue.
 
 usage: running_machine.py MILLWRIGHT HALCMD ROOT
 """
@@ -88,7 +88,7 @@ class Bench(Mill):
         return rest and here == self.position()
 
     def is_down(self):
-        """Nothing of the instance remains: HAL has ended and another machine can start."""
+        """Nothing of the instance remains: HAL has ended, and another machine can start."""
         return wait_until(lambda: subprocess.run([self.halcmd, 'show', 'comp'], env=self.env, capture_output=True,
                                                  check=False).returncode != 0)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""runtests passes correct tests, fails tests that are wrong or do not end, and counts them.
+"""Tests runtests: it passes correct tests, fails tests that are wrong or do not end, and counts them.
 
 usage: runtests.py BIN_FOLDER
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Programs print an address of the screen only where its files are installed, and script/run builds them.
+"""Programs print an address of the screen only if its files are installed, and script/run builds them.
 
 usage: screen_files.py MILLWRIGHT ROOT
 """

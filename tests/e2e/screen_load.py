@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Effects of five screens, a long upload, and strangers at the port for other computers on the server of the operator's screen (J3): how long a change takes to reach every
-screen, the server's share of a core, and a jog that is held during an upload: it does not stop, and its renewals are not held up.
+"""Load on the server of the operator's screen (J3): five screens, a long upload, and unknown clients at the port for other
+computers. Measures how long a change takes to reach every screen, the server's share of a core, and a jog during an upload: it
+must not stop, and its renewals must not be delayed.
 
 usage: screen_load.py MILLWRIGHT HALCMD ROOT [SECONDS] [UPLOAD_MB]
-Figures are those of this computer and of what else it does; what fails is only what no computer may do: a jog that stops.
+The figures depend on the computer and its other load. The test fails only if a jog stops.
 """
 import multiprocessing
 import os
@@ -60,7 +61,7 @@ def latency(port, server, program, seconds):
         expect(asker.do('SetFeedOverride', factor=feed) == 'DONE', 'an override is set')
         asker.until(lambda: all(feed in one.seen for one in listeners), 2)
         took += [one.seen[feed] - sent for one in listeners if feed in one.seen]
-        asker.until(lambda: False, 0.05 + (number % 7) / 100)  # at no fixed phase of the 20 Hz
+        asker.until(lambda: False, 0.05 + (number % 7) / 100)  # spread over the period of 20 Hz
     share = (cpu_s(server.pid) - used) / (time.monotonic() - begin)
     expect(asker.status['task']['interp_state'] != 'IDLE', 'the program runs')
     asker.do('AbortAll')
@@ -136,8 +137,8 @@ def upload(port, megabytes):
 
 
 class Strangers:
-    """At the port for other computers, in a process of their own: as many as find a place say nothing, others no greeting of
-    TLS, the rest greet again and again and have no token."""
+    """Unknown clients at the port for other computers, in a separate process: as many as get a slot stay silent, others send no
+    TLS greeting, the rest repeat the greeting and have no token."""
 
     SILENT, GARBAGE = 60, b'GET / HTTP/1.1\r\n\r\n' + bytes(range(256)) * 8
 
@@ -185,7 +186,7 @@ class Strangers:
 
 
 def strangers_come(port, seconds):
-    """The number of times that one of them received a greeting."""
+    """The number of times that one of them completed a TLS greeting."""
     mine, theirs = multiprocessing.Pipe()
     process = multiprocessing.Process(target=Strangers(port, seconds).run, args=(theirs,), daemon=True)
     process.start()

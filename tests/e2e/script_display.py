@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A script as the display of a machine that `linuxcnc -r` brings up: it reads every attribute, gives commands and ends
-the machine, whose exit status is that of the script (J1, J2).
+"""A script as the display of a machine started by `linuxcnc -r`: it reads every attribute, sends commands and ends the machine,
+whose exit status is that of the script (J1, J2).
 
 usage: script_display.py LINUXCNC HALCMD ROOT
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The display of script_display.py: the check to run is the last word, or the last but one."""
+"""The display of script_display.py: the check to run is the last or second last word."""
 import os
 import pathlib
 import signal

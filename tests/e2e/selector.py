@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The selector of configurations: its display, its copies, its memory and its starts; linuxcnc_var and linuxcnc_check_ini.
+"""Tests the selector of configurations: its display, its copies, its memory and its starts; linuxcnc_var and linuxcnc_check_ini.
 
 usage: selector.py BIN_FOLDER ROOT
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The access list of docs/integrator/shop.md at a mosquitto broker: the receivers of the messages that each user publishes.
+"""Tests the access list of docs/integrator/shop.md with a mosquitto broker: the receivers of messages that each user publishes.
 
 usage: shop_access.py ROOT
 """
@@ -41,7 +41,7 @@ def main():
     page = (pathlib.Path(sys.argv[1]) / 'docs/integrator/shop.md').read_text()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        folder.chmod(0o755)  # the broker drops root's rights
+        folder.chmod(0o755)  # the broker drops root privileges
         access, passwords = folder / 'access', folder / 'passwords'
         access.write_text(re.search(r'```\n(user shop.*?)```', page, re.S).group(1))
         passwords.touch()
@@ -58,7 +58,7 @@ def main():
             for user, client in clients.items():
                 for topic in (BIRTH, DATA, COMMAND, DEVICE_COMMAND, RECEIPT, STATE):
                     client.publish(topic, user, 1)
-            # A broker delivers in order: after the last state, no more messages arrive from that user.
+            # A broker delivers in order: after the last state, no more messages of that user arrive.
             wait_for(lambda: all((STATE, 'shop') in each for each in received.values()), 'the state is received')
             time.sleep(0.3)
         finally:

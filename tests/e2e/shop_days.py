@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""KEEP_DAYS of `millwright shop`: values of older days are removed, those of the others stay, and the page shows values that have not
-changed since. A session that reads the tables, as a backup does, makes no machine wait.
+"""Tests KEEP_DAYS of `millwright shop`: values of older days are removed, other values are kept, and the page shows values that
+have not changed since. A session that reads the tables, like a backup, does not delay machines.
 
 usage: shop_days.py COLLECTOR ROOT
 """

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Nothing that publishers have accepted is lost or doubled in the database of `millwright shop` when messages are lost between broker
-and collector: runs of 1 to 1,024 data messages of a node, most of them as long as the sequence of Sparkplug (256) or a multiple. A relay that
-reads MQTT's packets itself drops them. It also reads the fields of each payload by their numbers in the public schema: apart from those of
-Sparkplug there are two extensions, which number the messages of each birth. Publishers are publish-feeders, which count, with so many messages on the way that such a run fits.
+"""No value that publishers have accepted is lost or duplicated in the database of `millwright shop` when messages are lost
+between broker and collector: runs of 1 to 1,024 data messages of a node, most of them as long as the Sparkplug sequence (256) or
+a multiple. A relay that parses MQTT packets drops them. It also reads the fields of each payload by their numbers in the public
+schema: besides those of Sparkplug there are two extensions, which number the messages of each birth. Publishers are
+publish-feeders, which count, with enough messages in transit for such a run.
 
 usage: shop_gaps.py COLLECTOR FEEDER ROOT [GAPS [SEED]]
 """
@@ -28,7 +29,7 @@ LENGTHS = (256, 256, 256, 512, 1024, 255, 257, 1)
 
 
 class Relay(threading.Thread):
-    """Forwards the packets of a broker to its clients, except the packets that are to be lost."""
+    """Forwards the packets of a broker to its clients, except the packets to be lost."""
 
     def __init__(self, broker_port):
         super().__init__(daemon=True)
@@ -192,8 +193,8 @@ class World:
         time.sleep(0.5)
 
     def judge(self):
-        """The number of accepted values, and the values that are lost or stored twice. Values without a receipt are sent again after a new
-        start, so every value that is missing then had been confirmed."""
+        """The number of accepted values, and the values that are lost or stored twice. Values without a receipt are sent again
+        after a restart, so every value that is missing then had been confirmed."""
         for one in self.feeders.values():
             one.kill()
         accepted = {node: one.numbers() for node, one in self.feeders.items()}

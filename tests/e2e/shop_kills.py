@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Nothing that publishers have accepted is lost or doubled in the database of `millwright shop` while broker, database, collector and
-publishers are killed or hang at random times. Publishers are publish-feeders, which count; each prints a number after it has accepted it.
+"""No value that publishers have accepted is lost or duplicated in the database of `millwright shop` while broker, database,
+collector and publishers are killed or hang at random times. Publishers are publish-feeders, which count; each prints a number
+after it has accepted it.
 
 usage: shop_kills.py COLLECTOR FEEDER ROOT [KILLS [SEED [PUBLISHERS]]]
 """
@@ -54,7 +55,7 @@ class World:
         return f'{part} killed'
 
     def hang(self, target, seconds, is_killed):
-        """A part that hangs may be killed before it works again."""
+        """A hanging part may be killed before it continues."""
         if target is self.database:
             family = target.family()
             target.signal(signal.SIGSTOP, family)
@@ -121,7 +122,7 @@ def main():
                 return all(goal and stored[node][goal] for node, goal in goals.items())
             wait_for(is_complete, f'{goals} are stored', 60)
             accepted = {node: [number for number in one.numbers() if number <= goals[node]] for node, one in world.feeders.items()}
-            # The history follows the current values.
+            # The history is complete later than the current values.
             end = time.monotonic() + 30
             while judge(world, accepted)[0] and time.monotonic() < end:
                 time.sleep(0.2)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The page of `millwright shop` and its sums, with a machine that the test plays by another library of MQTT: state, program, alarm, jobs,
-OEE that is calculated here by hand, one notification for each alarm, and requests that are rejected.
+"""Tests the page of `millwright shop` and its sums. The test simulates a machine with another MQTT library: state, program,
+alarm, jobs, OEE compared with values calculated by hand, one notification for each alarm, and rejected requests.
 
 usage: shop_page.py COLLECTOR ROOT
 """
@@ -59,7 +59,7 @@ class Machine:
         self.client.publish(f'spBv1.0/plant/{kind}/cell{device}', payload.SerializeToString(), 0, False)
 
     def bear(self, at_ms, sent_ms=None):
-        """Values with a time, sent at that time or another one."""
+        """Sends values with a time at that time or at another one."""
         self.seq = 0
         self.send('NBIRTH', at_ms, {'bdSeq': 3}, True, sent_ms)
         self.send('DBIRTH', at_ms, {'State': 'ON', 'Execution': 'READY', 'Mode': 'AUTO', 'Program/Path': '/nc/bolt.ngc', 'Program/Line': 7,
@@ -136,7 +136,7 @@ def check_requests(port):
 
 
 def check_page(port, database, now_ms):
-    """A shift of one hour that began an hour ago: 600 s and 300 s active, 1 part of 2 rejected, ideal time 400 s a part."""
+    """A shift of one hour that began an hour ago: 600 s and 300 s active, 1 part of 2 rejected, ideal time 400 s per part."""
     machine = json.loads(get(port, '/machines')[1])['machines'][0]
     expect((machine['node'], machine['device'], machine['alive']) == ('cell', 'Lathe', True), 'the machine', machine)
     expect((machine['state'], machine['execution'], machine['program'], machine['line']) == ('ON', 'READY', '/nc/bolt.ngc', '7'), 'its state', machine)
@@ -157,7 +157,7 @@ def check_page(port, database, now_ms):
 
 
 def check_notifications(mails, bodies):
-    """The clock of the machine is an hour behind, which is reported, too."""
+    """The clock of the machine is one hour slow, which is also reported."""
     wait_for(lambda: len(mails) > 1 and len(bodies) > 1, 'the alarm is sent')
     time.sleep(3)
     bodies = sorted(bodies, key=lambda body: body['source'])

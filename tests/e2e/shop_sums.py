@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The sums of `millwright shop` from its table of runs against the functions of the first schema steps, which calculate them from all
-values: random states, modes, programs and presences, many of them at the same time, stored in random order and in batches of random
-size; jobs, OEE and expected end over random intervals.
+"""Compares the sums of `millwright shop` from its table of runs with the functions of the first schema steps, which calculate
+them from all values: random states, modes, programs and presences, many at the same time, stored in random order and in batches
+of random size; jobs, OEE and expected end over random intervals.
 
 usage: shop_sums.py ROOT [MACHINES [SEED]]
 """
@@ -28,7 +28,7 @@ def steps(root):
 
 
 def judge(root):
-    """The functions of steps 2 and 4 under other names."""
+    """Installs the functions of steps 2 and 4 under other names."""
     folder = pathlib.Path(root, 'src/clients/shop/store/schema')
     text = (folder / '002_sums.sql').read_text() + (folder / '004_page.sql').read_text()
     found = re.findall(rf'CREATE FUNCTION (?:{JUDGED})\(.*?\n\$\$;', text, re.S)

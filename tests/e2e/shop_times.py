@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Times in `millwright shop`: two values of one metric with one time, values that come late, and a machine whose clock is wrong. A machine
-that the test plays by another library of MQTT; rows and notifications are compared with what is written here by hand.
+"""Tests times in `millwright shop`: two values of one metric with the same time, late values, and a machine with a wrong clock.
+The test simulates a machine with another MQTT library; rows and notifications are compared with expected values written by hand.
 
 usage: shop_times.py COLLECTOR ROOT
 """
@@ -26,7 +26,7 @@ from shop_world import Collector, Postgres, skip_without_database
 FOUND = Findings()
 expect = FOUND.expect
 MINUTE_MS, HOUR_MS, DAY_MS = 60_000, 3_600_000, 86_400_000
-# Of two bytes and four bytes a letter, longer than one encoded word.
+# Letters of two and four bytes, longer than one encoded word.
 LATE_ALARM = 'Kühlmitteldruck zu niedrig 🛢 – Füllstand prüfen, dann Störung quittieren und Programm fortsetzen: ä'
 WRONG_MS = 2 * HOUR_MS  # the time by which the clock is ahead
 
@@ -80,7 +80,7 @@ def check_late(database, machine, now_ms):
     at = now_ms - 10 * DAY_MS
     before = database.ask("SELECT count(*) FROM jobs((SELECT id FROM machine WHERE device = 'Lathe'), '-infinity', now())")
     machine.readings(now_ms, ('Execution', at, 'ACTIVE'), ('Execution', at + 100_000, 'FEED_HOLD'), ('Execution', at + 600_000, 'READY'))
-    # Later than the rest of its job, and within it.
+    # Sent later than the rest of its job, with a time within it.
     machine.readings(now_ms, ('Execution', at + 160_000, 'ACTIVE'), ('Program/Ended', at + 599_000, 1))
     span = f"(SELECT id FROM machine WHERE device = 'Lathe'), to_timestamp({(at - HOUR_MS) / 1000}), to_timestamp({(at + HOUR_MS) / 1000})"
     wait_for(lambda: database.ask(f'SELECT result FROM jobs({span})') == [['ENDED']], 'a late job')
@@ -92,7 +92,7 @@ def check_late(database, machine, now_ms):
 
 
 def check_late_alarm(machine, mails, bodies, now_ms):
-    """An alarm of two days ago that has ended, one that has not, and one of now."""
+    """An alarm of two days ago that has ended, one that has not ended, and a current one."""
     machine.readings(now_ms, ('Alarms/Drives', now_ms - 2 * DAY_MS, LATE_ALARM), ('Alarms/Drives', now_ms - 2 * DAY_MS + 1000, ''))
     machine.readings(now_ms, ('Alarms/Drives', now_ms - 3 * HOUR_MS, 'Old alarm.'))
     wait_for(lambda: len(bodies) == 2 and len(mails) == 2, 'late alarms are sent')
@@ -117,7 +117,7 @@ def check_late_alarm(machine, mails, bodies, now_ms):
 
 
 def check_wrong_clock(database, machine, port, bodies, now_ms):
-    """A clock that is ahead: its alarm is not late, the shop sees its end, and a notification is sent."""
+    """A clock that is fast: its alarm is not late, the shop detects its end, and a notification is sent."""
     ahead = now_ms + WRONG_MS
     machine.bear(ahead)
     wait_for(lambda: any(body['source'] == 'Clock' for body in bodies), 'a wrong clock is reported')

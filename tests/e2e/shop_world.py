@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Common parts of the checks of `millwright shop`: a private PostgreSQL in a temporary folder (Unix socket only, an ordinary user), and the
-collector."""
+"""Common parts of the checks of `millwright shop`: a private PostgreSQL in a temporary folder (Unix socket only, ordinary user),
+and the collector."""
 import os
 import pathlib
 import pwd
@@ -76,7 +76,7 @@ class Postgres:
         return [line.split('|') for line in answer.stdout.splitlines()]
 
     def family(self):
-        """The server and its processes; those of a killed server end by themselves, but later."""
+        """The server and its processes; those of a killed server end later by themselves."""
         children = pathlib.Path(f'/proc/{self.process.pid}/task/{self.process.pid}/children').read_text().split()
         return [self.process.pid, *(int(child) for child in children)]
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Sessions of a script that is the display of a small machine: single steps, limits of spindles, tool tables that are read again. Each
-must show the facts in side_by_side/NAME.txt, which LinuxCNC 2.9 shows too, but for lines that begin with "LinuxCNC ".
+"""Sessions of a script that is the display of a small machine: single steps, spindle limits, reloaded tool tables. Each session
+must give the facts in side_by_side/NAME.txt, which LinuxCNC 2.9 also gives except for lines that begin with "LinuxCNC ".
 
 usage: side_by_side.py BIN_FOLDER [NAME...]     run on this build
-       side_by_side.py --linuxcnc [NAME...]     run on the installed LinuxCNC 2.9 (alone, or in namespaces of its own)
+       side_by_side.py --linuxcnc [NAME...]     run on the installed LinuxCNC 2.9 (alone, or in separate namespaces)
        side_by_side.py --print ...              print the facts, compare nothing
 """
 import argparse

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The example of a module that makes threads, built by halcompile: motion runs in its servo-thread as in motion's own thread, its other
-thread runs beside it, and a servo-thread of another period is refused.
+"""The example module that creates threads, built by halcompile: motion runs in its servo-thread as in motion's own thread, its
+second thread runs in parallel, and a servo-thread with another period is rejected.
 
 usage: thread_module.py BIN_FOLDER SOURCE_FOLDER
 """

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Follows docs/integrator/hal/tutorial.md word by word. usage: tutorial.py BIN SOURCE_DIR
+"""Executes docs/integrator/hal/tutorial.md literally. usage: tutorial.py BIN SOURCE_DIR
 
-Files are those of the page, lines behind "halcmd:" go to one halrun, lines behind "$" are run while it waits; only
-`--install` becomes `--compile`, so that nothing is left in the build folder.
+Files are those of the page. Lines after "halcmd:" are sent to one halrun; lines after "$" run while it waits. Only `--install` is
+replaced by `--compile`, so that nothing remains in the build folder.
 """
 import os
 import pathlib

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Each pin, argument and field that carries a speed, length, angle, time or ratio has the unit of docs/reference/units.md.
+"""Checks that each pin, argument and field for a speed, length, angle, time or ratio has the unit of docs/reference/units.md.
 
-units_screen.py measures them by what the machine does; docs/reference/units.md has the same measurement of LinuxCNC beside it. Every
-pin of the type float of halui, motion and ini must be in the page.
+units_screen.py measures the units by the behaviour of the machine; docs/reference/units.md contains the same measurement of
+LinuxCNC. The page must contain every pin of type float of halui, motion and ini.
 
 usage: units.py BIN_FOLDER ROOT
-       units.py --there OUT ROOT   checks the column of LinuxCNC against what units_screen.py has written there as the display of its own
-                                   machine (UNITS_OUT=OUT UNITS_PEER=1, linuxcnc -r units.ini)
+       units.py --there OUT ROOT   compares the LinuxCNC column with the output of units_screen.py as the display of LinuxCNC
+                                   (UNITS_OUT=OUT UNITS_PEER=1, linuxcnc -r units.ini)
 """
 import json
 import os

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A display that measures which unit each pin, argument and field has that carries a speed, length, angle, time or ratio.
+"""A display that measures the unit of each pin, argument and field for a speed, length, angle, time or ratio.
 
-It uses nothing but Python's linuxcnc and hal, so it measures LinuxCNC in the same way. The machine's unit is the inch,
-so that a machine unit is not a millimetre. It writes one JSON object: name to [dimension, factor], with the factor to
-machine units, seconds, degrees, rev/min or a plain ratio; or a text where the name is not there.
+It uses only Python's linuxcnc and hal, so it measures LinuxCNC in the same way. The machine unit is the inch, so that it differs
+from a millimetre. It writes one JSON object: name to [dimension, factor], with the factor to machine units, seconds, degrees,
+rev/min or a plain ratio; or a text if the name does not exist.
 """
 import json
 import os
@@ -31,7 +31,7 @@ def probe(*names):
 
 
 def generic(name):
-    """joint.0.vel-cmd as joint.N.vel-cmd, axis.x.jog-scale as axis.L.jog-scale."""
+    """Converts joint.0.vel-cmd to joint.N.vel-cmd, and axis.x.jog-scale to axis.L.jog-scale."""
     name = re.sub(r'\b(joint|spindle|ini)\.\d+\.', r'\1.N.', name)
     name = re.sub(r'\b(axis|ini)\.[a-z]\.', r'\1.L.', name)
     return re.sub(r'\b(tooloffset|length_offset)\.[a-z]$', r'\1.L', name)
@@ -60,7 +60,7 @@ def wait(condition, seconds=5.0):
 
 
 def steady(read, seconds=3.0):
-    """The value that `read` returns for some time and that is not zero."""
+    """A value of `read` that is stable for some time and not zero."""
     end, last, same = time.time() + seconds, None, 0
     while time.time() < end:
         value = read()
@@ -78,7 +78,7 @@ def machine_time():
 
 
 def at_once(read, clock=machine_time):
-    """(time, value) of one instant: read again if more than 4 ms passed in between."""
+    """(time, value) read together: repeated if more than 4 ms have passed in between."""
     for _ in range(1000):
         before = clock()
         value = read()
@@ -198,7 +198,7 @@ def dial(name, read, scale, dimension):
     time.sleep(0.2)
     found(f'halui.{name}.value', dimension, read() / get(f'halui.{name}.value'))
     if name.startswith('spindle'):
-        return  # LinuxCNC 2.9 does not count in this case
+        return  # LinuxCNC 2.9 does not count here
     put(f'halui.{name}.count-enable', 1)
     time.sleep(0.2)
     start = read()
@@ -566,7 +566,7 @@ class Line:
             except socket.timeout:
                 pass
             if not text.startswith('get') or len(answer.split('\n')) > 2:
-                break  # LinuxCNC 2.9 repeats the line before its answer
+                break  # LinuxCNC 2.9 repeats the line before the answer
         return answer
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Files from before the separation of joints and axes run after update_ini, and the originals are kept.
+"""Files from before the separation of joints and axes work after update_ini, and the originals are kept.
 
 usage: update_ini.py BIN_FOLDER ROOT
 """

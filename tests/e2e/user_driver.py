@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Drivers on the canonical devices are built outside of the tree by halcompile and loaded (B2).
+"""Drivers for the canonical devices are built outside the tree by halcompile and loaded (B2).
 
 usage: user_driver.py BIN_FOLDER SOURCE_FOLDER
 """

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The examples of kinematics, built by halcompile, drive machines in virtual time: one for a single machine, and one
-that is the third type of a switchable module.
+"""The kinematics examples, built by halcompile, drive machines in virtual time: one for a single machine, and one that is the
+third type of a switchable module.
 
 usage: user_kinematics.py BIN_FOLDER SOURCE_FOLDER
 """
@@ -15,7 +15,7 @@ import tempfile
 
 PROGRAM = 'G21 G90 G0 X10 Y0\nG1 Y50 F3000\nG0 X0 Y0\nM2\n'
 LEAN = 0.1
-# To the user's type at X10 Y20, a move there, and back.
+# Switches to the user's type at X10 Y20, moves, and switches back.
 SWITCHED = 'G21 G90 G0 X10 Y20\nM68 E3 Q2\nM66 E0 L0\nG1 X-20 Y30 F3000\nM68 E3 Q0\nM66 E0 L0\nG0 X0 Y0\nM2\n'
 SHIFT = 7
 
@@ -27,7 +27,7 @@ def build(programs, source, folder, name):
 
 
 def run(programs, folder, text, program):
-    """The trace of the program on the machine."""
+    """Runs the program on the machine and returns its trace."""
     (folder / 'configs/sim/case.ini').write_text(text)
     (folder / 'part.ngc').write_text(program)
     trace = folder / 'trace.csv'

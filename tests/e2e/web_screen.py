@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`millwright ui` serves a machine that `millwright start` keeps up, as a browser uses it (J3): switch on, home, jog, stop, load,
-path, run, abort, messages; whichever side is killed, the other side reports it and continues.
+"""Tests `millwright ui` with a machine of `millwright start`, as a browser uses it (J3): switch on, home, jog, stop, load, path,
+run, abort, messages. If either side is killed, the other side reports it and continues.
 
 usage: web_screen.py MILLWRIGHT HALCMD ROOT
 """
@@ -164,7 +164,7 @@ class Bench(Mill):
         return process, int(re.search(r'http://127\.0\.0\.1:(\d+)/', path.read_text()).group(1))
 
     def remote_port(self):
-        """Data of the last server that was started with --listen."""
+        """Starts a server with --listen and returns its data."""
         expect(wait_until(lambda: 'for other computers' in self.files[-1].read_text()), 'other computers have a way in')
         return int(re.search(r'for other computers.*https://127\.0\.0\.1:(\d+)/', self.files[-1].read_text()).group(1))
 

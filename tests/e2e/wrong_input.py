@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Wrong input gets one clear error with file, line and column; status 1; nothing left running; no file touched.
+"""Wrong input gives one clear error with file, line and column and status 1; no process remains and no file is changed.
 
 usage: wrong_input.py MILLWRIGHT ROOT
 """
@@ -25,7 +25,7 @@ def append(path, text):
     path.write_text(path.read_text() + text)
 
 
-# Each case: name, the change in the folder, and the text of the one error.
+# Each case: name, the change in the folder, and the text of the expected error.
 CASES = [
     ('missing section', lambda d: replace(d / 'configs/sim/mill_mm.ini', '[KINS]', '[KINSS]'),
      r'mill_mm\.ini.*error: section \[KINS\] is missing'),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL files against an instance with a component, functions and a thread. The first byte selects the meaning
-// of the rest: as text (lines, substitution, words), as a list of commands with words that mostly make sense,
-// or as either for two passes; completion is asked for at the end.
+// HAL files with an instance that has a component, functions and a thread. The first byte selects the meaning
+// of the rest: text (lines, substitution, words), a list of commands with mostly valid words, or either of
+// these in two passes. Completion is requested at the end.
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A firmware whose description is damaged, and registers with any value: the driver rejects it, or drives it
+// A firmware with a damaged description and arbitrary register values: the driver rejects it, or drives it
 // without writing more than it has announced.
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Journals: any bytes as a file, after a valid beginning, and as the state in a record with a valid checksum.
-// A state that was read and written must read the same.
+// A state that was read and written must be read unchanged.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

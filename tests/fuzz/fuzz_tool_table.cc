@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A tool table that was read must be written so that it reads the same again, for both types of changers, and
-// so must the life of tools.
+// A tool table and tool life that were read must be written so that they are read unchanged, for both types
+// of tool changer.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

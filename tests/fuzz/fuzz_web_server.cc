@@ -55,7 +55,7 @@ std::string handshake(int port) {
            "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n";
 }
 
-/// Well-formed heads with a mask of zeros; the first of two bytes is the kind and its flags, the second the
+/// Valid frame headers with a zero mask; the first of two bytes is the type with its flags, the second the
 /// size.
 std::string frames(std::string_view bytes) {
     constexpr std::size_t LONGEST = 125;

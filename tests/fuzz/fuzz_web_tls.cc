@@ -123,7 +123,7 @@ struct Rig {
     fuzz::WebRig web;
     std::unique_ptr<screen::Server> server;
     std::unique_ptr<screen::Api> api;
-    std::unique_ptr<TlsPeer> own;  ///< speaks no TLS: only its socket is used
+    std::unique_ptr<TlsPeer> own;  ///< without TLS: only its socket is used
 };
 
 struct Script {

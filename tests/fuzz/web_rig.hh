@@ -14,7 +14,7 @@
 
 namespace mw::fuzz {
 
-/// Does each job at once.
+/// Executes each job immediately.
 class Here final : public screen::BackgroundJobs {
   public:
     void run(Job job, screen::Reply reply) override { reply(job()); }

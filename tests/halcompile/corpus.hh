@@ -86,7 +86,7 @@ struct Corpus : ::testing::Test {
         EXPECT_EQ(done.status, 0) << done.text;
         return done.text;
     }
-    /// Compiles and loads; "ok" or the error.
+    /// Compiles and loads a component. Returns "ok" or the error.
     std::string load(const std::string &file, const std::vector<std::string> &args = {}) {
         compile(file);
         return load_only(fs::path(file).stem(), args);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Components as users write them are compiled by the program halcompile, loaded and run.
+// Components as users write them: compiled by halcompile, loaded and run.
 #include <gtest/gtest.h>
 
 #include "hal/include/hal.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs built by halcompile, and its other work: installing, makefiles, messages.
+// Tests programs built by halcompile, and its other functions: installation, makefiles, messages.
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -22,7 +22,7 @@ namespace {
 
 using Halcompile = Corpus;
 
-/// A started program, which is ended with the test.
+/// A started program, which is stopped at the end of the test.
 struct Program {
     pid_t pid = 0;
     explicit Program(std::vector<std::string> words) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs one HAL file with a driver on a simulated board, each in its own network namespace."""
+"""Runs a HAL file with a driver on a simulated board, each in a separate network namespace."""
 import os
 import pathlib
 import subprocess

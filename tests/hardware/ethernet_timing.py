@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Times of a cycle with one and with two boards over virtual Ethernet links at 1 kHz.
+"""Measures cycle times with one and with two boards over virtual Ethernet links at 1 kHz.
 
 usage: ethernet_timing.py BIN [--seconds N] [--limit N] [--cases one,two,loss,delay] (as root)
-Each board has a separate network namespace; driver and boards have SCHED_FIFO. The times are from the record of cycles, which doctor reads, too.
+Each board has a separate network namespace; driver and boards have SCHED_FIFO. The times are from the record of cycles, which
+doctor also reads.
 Prints a table; exit status 0 done, 77 skipped with the reason.
 """
 import argparse

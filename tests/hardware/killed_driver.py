@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The outputs of a simulated board go off within the time of its watchdog when its driver is killed, suspended, ended or unloaded.
+"""The outputs of a simulated board switch off within its watchdog time when its driver is killed, suspended, ended or unloaded.
 
 usage: killed_driver.py BIN [--count N] [--seed S] [--margin-ms MS]
-The realtime process of a HAL file that moves a motor gets a signal at a random instant. Then the board is asked, by packets that this script makes, when
-the directions of its pins became inputs. Exit status 0: within the watchdog time and a margin (10 ms) for the processes of this computer, and they stay off until an
-operator clears the watchdog.
+The realtime process of a HAL file that moves a motor receives a signal at a random time. Then this script queries the board with
+its own packets for the time at which its pins became inputs. Exit status 0: within the watchdog time plus a margin (10 ms) for
+the processes of this computer, and the outputs stay off until an operator clears the watchdog.
 """
 import argparse
 import os

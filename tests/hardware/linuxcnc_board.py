@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lets LinuxCNC's own hm2_eth, unmodified, drive simulated boards: of a 7I76E positions, counts, index, inputs, smart serial and watchdog; of
-the other models the values of their modules.
+"""Runs LinuxCNC's hm2_eth, unmodified, with simulated boards: of a 7I76E positions, counts, index, inputs, smart serial and
+watchdog; of the other models the values of their modules.
 
 usage: linuxcnc_board.py HM2_BOARD (as root)
-Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. Board and driver run in network namespaces of their own, and the
-driver in its own IPC namespace, so that it meets no other HAL of the machine. Timing is that of an ordinary process: the period is
-4 ms, and single packet errors do not count.
+Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. Board and driver run in separate network namespaces,
+and the driver in a separate IPC namespace, so that it uses no other HAL of the computer. Timing is that of an ordinary process:
+the period is 4 ms, and single packet errors do not count.
 """
 import os
 import pathlib
@@ -128,7 +128,7 @@ def ip(*words):
 
 
 class Network:
-    """Two namespaces with a cable between them."""
+    """Two namespaces connected by a virtual cable."""
 
     def __init__(self):
         tag = f'b{os.getpid() % 100000}'
@@ -200,7 +200,7 @@ def check(output, log):
         return ['the driver has not loaded:\n' + output[-3000:]]
     if abs(float(value('stepgen.00.position-fb')) - wanted) > 0.005:
         problems.append(f'position-fb is {value("stepgen.00.position-fb")}, not {wanted}')
-    # The motor has made the whole steps of the accumulator, each of 20 counts.
+    # The motor has moved the whole steps of the accumulator, each of 20 counts.
     accumulators = re.findall(r'R0 0x2100 5x32 (\w{8})', log)
     raw = int(value('encoder.00.rawcounts'))
     if raw % 20 != 0 or abs(raw // 20 - steps) > 1:
@@ -219,7 +219,7 @@ def check(output, log):
     sent = {register: re.findall(rf'W0 0x{register} 1x32 (\w{{8}})', log) for register in ('5D00', '5E00', '5D04')}
     if not ('7FFF0008' in sent['5D00'] and '00000001' in sent['5E00'] and '00008000' in sent['5D04']):
         problems.append('the outputs of the smart serial cards are not sent')
-    # Exchanges that the operating system delays are single faults; at 200 the port would stop.
+    # Exchanges that the operating system delays are single faults; after 200 the port would stop.
     if value('sserial.port-0.port_state') != '0x00000003' or int(value('sserial.port-0.fault-count'), 16) >= 200:
         problems.append('smart serial does not run')
     if value('io_error') != 'FALSE':

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares our hm2_spi, hm2_7i90, hm2_7i43 and hm2_pci with LinuxCNC's: pins, parameters, and the data that a cycle sends.
+"""Compares our hm2_spi, hm2_7i90, hm2_7i43 and hm2_pci with LinuxCNC's: pins, parameters, and the data sent per cycle.
 
 usage: linuxcnc_buses.py HALRUN MODELS_FOLDER (as root)
-Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. bus_shim.c answers instead of ports and devices; a folder that is
-mounted over /sys/bus/pci in a separate namespace has the cards. Both drivers get the same registers. What only newer versions of LinuxCNC
-have, and what ours adds or lacks, is listed in LEFT_OUT.
+Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. bus_shim.c simulates ports and devices; a folder
+mounted over /sys/bus/pci in a separate namespace contains the cards. Both drivers get the same registers. LEFT_OUT lists features
+of newer versions of LinuxCNC, and features that ours adds or lacks.
 """
 import difflib
 import os
@@ -109,8 +109,8 @@ def spi_accesses(line):
 
 
 def cycle_of(lines):
-    """The accesses of one cycle, sorted: the order of the reads may differ. The cookie is left out, which only ours reads in each cycle, and
-    an EPP access without data."""
+    """The accesses of one cycle, sorted, because the order of the reads may differ. Omits the cookie, which only ours reads in
+    each cycle, and EPP accesses without data."""
     text = '\n'.join(lines)
     spi = [re.findall(rf'^spi \d+: (?:0100a810 0{{8}} )?1000{access}8.*', text, re.M) for access in 'ab']
     if all(spi):

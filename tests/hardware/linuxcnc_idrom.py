@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The 15 faulty firmware descriptions of hm2_test: LinuxCNC's hostmot2 and ours report the same errors, line by line.
 
-usage: linuxcnc_idrom.py HALRUN (not as root: LinuxCNC's halrun refuses to)
-Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. Pattern 12 has pins without an IO port: LinuxCNC reports it and loads the
-board, ours refuses it.
+usage: linuxcnc_idrom.py HALRUN (not as root: LinuxCNC's halrun rejects root)
+Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason. Pattern 12 has pins without an IO port: LinuxCNC
+reports this and loads the board, ours rejects it.
 """
 import os
 import pathlib
@@ -20,7 +20,7 @@ END = 'hm2_test.0: hm2_test fails HM2 registration'
 
 
 def errors(halrun, folder, pattern):
-    """Lines of the driver among the errors."""
+    """Lines of the driver in the error output."""
     hal = pathlib.Path(folder) / 'test.hal'
     hal.write_text(f'loadrt hostmot2\nloadrt hm2_test test_pattern={pattern}\n')
     done = subprocess.run([halrun, '-f', str(hal)], cwd=folder, capture_output=True, text=True, timeout=60, check=False,

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares our hm2_eth with LinuxCNC's on a board of memory with every small module: pins, and registers after each change of a pin.
+"""Compares our hm2_eth with LinuxCNC's on a memory board with every small module: pins, and registers after each change of a pin.
 
 usage: linuxcnc_modules.py HALRUN (as root)
-Exit status: 0 only the differences of the table DIFFERENT are there, 1 there are others, 77 skipped, with the reason.
+Exit status: 0 only the differences of the table DIFFERENT, 1 others, 77 skipped, with the reason.
 """
 import os
 import pathlib
@@ -75,7 +75,8 @@ DIFFERENT = {
 # Ports, watchdog, lamps and phase-locked loop, which other tests compare.
 OTHER = re.compile('1[0-4]..|0[CDE]..|7...|02..')
 PIN = re.compile(r'^\s+\d+\s+(bit|float|s32|u32)\s+(IN|OUT|I/O|RW|RO)\s+\S+\s+hm2_7i80\.0\.(\S+)', re.M)
-# Not compared: times of functions, our counters, names that LinuxCNC's list cuts, an input that both drivers reset and that is I/O here.
+# Not compared: times of functions, our counters, names that LinuxCNC's list truncates, and an input that both drivers
+# reset and that is I/O here.
 OTHER_PIN = re.compile(r'\.tmax|raw\.write_strobe|\.time$|^packet|debug|io_error|data-incomplete|phase-.-inverted|refpdm')
 MARK = 0xFF00
 PREFIX = 'hm2_7i80.0.'

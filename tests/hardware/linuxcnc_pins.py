@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compares the pins and parameters of our hm2_eth with those of LinuxCNC's, on the same simulated boards: name, type, direction.
+"""Compares the pins and parameters of our hm2_eth with those of LinuxCNC's on the same simulated boards: name, type, direction.
 
 usage: linuxcnc_pins.py HM2_BOARD HALRUN (as root)
-Prints the differences. Exit status: 0 there are none but our own pins, 1 there are others, 77 skipped, with the reason.
+Prints the differences. Exit status: 0 none except our own pins, 1 others, 77 skipped, with the reason.
 """
 import pathlib
 import re

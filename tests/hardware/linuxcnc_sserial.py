@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Gives the same HAL commands for smart serial cards to our hm2_eth and to LinuxCNC's: the simulated cards must get the same outputs, and
-the pins must show the same inputs.
+"""Sends the same HAL commands for smart serial cards to our hm2_eth and to LinuxCNC's: the simulated cards must get the same
+outputs, and the pins must show the same inputs.
 
 usage: linuxcnc_sserial.py HM2_BOARD HALRUN (as root)
 Exit status: 0 all agree, 1 something differs, 77 skipped, with the reason.
@@ -68,13 +68,13 @@ def hal(mode):
     lines += [f'setp {CARD}.enc1.scale 37'] if mode == '2' else []
     lines += ['setp hm2_7i76e.0.stepgen.00.enable 1']
     for move in MOVES:
-        # The motor is away from the edges of its steps when the inputs are read.
+        # The motor is not at a step edge when the inputs are read.
         lines += [f'setp hm2_7i76e.0.stepgen.00.position-cmd {move + 0.0025}', 'loadusr -w sleep 2', 'show pin hm2_7i76e.0.7i']
     return '\n'.join(lines + ['show param hm2_7i76e.0.7i', 'show pin hm2_7i76e.0.sserial', ''])
 
 
 def outputs(log):
-    """The words of the cards at each change of the lamp, from the last exchange."""
+    """The words of the cards from the last exchange, at each change of the lamp."""
     words, taken, lamp, steps = {}, {}, '00000000', []
     for address, value in re.findall(r'W0 0x(5[A-F]\w\w|0200) 1x32 (\w+)', log):
         if address == '0200':

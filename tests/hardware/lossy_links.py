@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LinuxCNC's hm2_eth and ours with the same HAL file, at 1 kHz, on the same simulated 7I76E, over a link that loses, repeats and delays packets.
+"""Runs LinuxCNC's hm2_eth and ours with the same HAL file, at 1 kHz, on the same simulated 7I76E, over a link that loses, repeats
+and delays packets.
 
 usage: lossy_links.py HM2_BOARD HALRUN [--seconds N] [--cases NAME,NAME] (as root)
-Prints a table: failed cycles (packet-error-total) since the faults began, and whether io_error has stopped all traffic. Exit status 0 done, 77 skipped with
-the reason. Driver and board have SCHED_FIFO and network namespaces of their own. Both drivers have their default limits.
+Prints a table: failed cycles (packet-error-total) since the faults began, and whether io_error has stopped all traffic. Exit
+status 0 done, 77 skipped with the reason. Driver and board have SCHED_FIFO and separate network namespaces. Both drivers have
+their default limits.
 """
 import argparse
 import os

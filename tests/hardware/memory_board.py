@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A 7I80 whose registers are plain memory, with a firmware that has every small module, on LBP16 over UDP.
+"""A 7I80 whose registers are plain memory, with a firmware that has every small module, with LBP16 over UDP.
 
 usage: memory_board.py ADDRESS LOG
-The log has a line "ADDRESS VALUE" for each register that gets another value. Writes to an odd address set what the driver reads at the even
-address below it, so that a HAL file plays the board by raw access. Registers in READ_ONLY keep what they show otherwise.
+The log has a line "ADDRESS VALUE" for each register whose value changes. A write to an odd address sets the value that the driver
+reads at the even address below it, so that a HAL file can simulate the board by raw access. Registers in READ_ONLY keep their
+other values.
 """
 import socket
 import struct

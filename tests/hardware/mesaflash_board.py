@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lets mesaflash, a third-party program, report the simulated boards; its report must agree with the model files.
+"""mesaflash, a third-party program, reports the simulated boards; its report must agree with the model files.
 
 usage: mesaflash_board.py HM2_BOARD MODELS_FOLDER
 Exit status: 0 agrees, 1 differs, 77 skipped (mesaflash is not installed). Needs no privileges.
@@ -17,11 +17,11 @@ SKIPPED = 77
 # The names of the boards in mesaflash.
 DEVICES = {'7i76e': '7i76e', '7i80': '7i80db-16', '7i80hd-3pwm': '7i80hd-16', '7i80hd-resolver': '7i80hd-16', '7i92': '7i92', '7i92-latch': '7i92',
            '7i92-uart': '7i92', '7i95': '7i95', '7i96s': '7i96s', '7i97': '7i97'}
-# How mesaflash names the modules of a pin.
+# mesaflash's names for the modules of a pin.
 NAMES = {'stepgen': 'StepGen', 'encoder': 'QCount', 'muxed-encoder': 'MuxedQCount', 'mux-select': 'MuxedQCountSel', 'pwm': 'PWM',
          'smart-serial': 'SSerial', 'ssr': 'SSR', 'inm': 'InM', 'inmux': 'InMux', 'three-phase-pwm': 'TPPWM', 'resolver': 'ResolverMod',
          'bspi': 'BufSPI', 'uart-tx': 'UARTTX', 'uart-rx': 'UARTRX', 'pkt-uart-tx': 'PktUARTTX', 'pkt-uart-rx': 'PktUARTRX', 'rc-pwm': 'RCPWM'}
-# Smart serial cards on channels 0 to 3, with the modes that they describe.
+# Smart serial cards on channels 0 to 3, with the modes that they declare.
 REMOTES = 'remote 0 card=7i77\nremote 2 card=7i73\nremote 3 card=7i76\n'
 REMOTE_FACTS = {0: ('7I77', 'I/O [index 00]'), 1: ('7I77', 'Analog [index 00]'), 2: ('7I73', 'I/O_Enc_Ana_FD [index 02]'),
                 3: ('7I76', 'I/O_Spin_Ana_Enc [index 02]')}

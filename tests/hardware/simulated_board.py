@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The sample configuration with a simulated Mesa board starts, homes by its switches, cuts, survives a lost board safely, and ends.
+"""The sample configuration with a simulated Mesa board starts, homes to its switches, cuts, stops safely when the board is lost,
+and ends.
 
 usage: simulated_board.py BIN_FOLDER ROOT [BOARD ...] (all samples without a name)
 """

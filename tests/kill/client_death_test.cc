@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A client is killed with kill -9 while its program cuts: the cut continues, and its right to operate ends.
+// A client is killed with kill -9 while its program cuts: the cut continues, and the client's right to
+// operate ends.
 #include <iostream>
 
 #include "kill/started_machine.hh"

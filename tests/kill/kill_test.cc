@@ -32,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double MAX_ACCELERATION = 1500.0;  // configs/sim/mill_mm.ini, X and Y
 constexpr std::int64_t BRAKING_WITHIN_NS = 50000000;
 
-/// A square of 200 mm, over and over, at 60 mm/s.
+/// A square of 200 mm, repeated, at 60 mm/s.
 void write_program(const fs::path &path) {
     std::ofstream out(path);
     out << "G21 G90 G17 G61\nF3600\nG0 X-100 Y-100\no1 repeat [1000]\nG1 X100\nY100\nX-100\nY-100\no1 "

@@ -23,7 +23,7 @@ class KillRecovery : public StartedMachine {
         while (Clock::now() < deadline && line_now() <= from && isUnderWay()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
-        if (line_now() <= from) {  // an overloaded computer stops its machine: the position is kept
+        if (line_now() <= from) {  // an overloaded computer has stopped its machine; the position is kept
             ++stopped;
             std::cout << "stopped before line " << from << ": " << client->outcome(run).reason << "\n";
             kill_machine();

@@ -44,7 +44,7 @@ class StartedMachine : public ::testing::Test {
     StartedMachine() {
         files::remove_all(folder);
         files::copy(MW_SOURCE_DIR "/configs/sim", folder);
-        // Homed at its position, as homing to switches would take seconds in each start.
+        // Homes immediately, because homing to switches would take seconds in each start.
         std::string ini = content(folder / "mill_mm.ini");
         ini = std::regex_replace(ini, std::regex("(HOME_SEARCH_VEL|HOME_LATCH_VEL) *=.*"), "$1 = 0");
         std::ofstream(folder / "mill.ini") << ini;

@@ -12,7 +12,7 @@ namespace mw::mesa_campaign {
 
 namespace {
 
-/// Probabilities of loss in networks at which a machine can work, and at which none should.
+/// Loss rates of networks in which a machine can work, and in which it should not.
 constexpr std::array LOSSES{0.0, 0.001, 0.01, 0.05};
 constexpr double HARD_LOSS = 0.2;
 

@@ -13,11 +13,11 @@ constexpr unsigned PLAN_VERSION = 1;
 
 enum class Trouble : std::uint8_t {
     NONE,
-    HOST_SILENT,  ///< no cycles, as after SIGSTOP
+    HOST_SILENT,  ///< no cycles, as with SIGSTOP
     LINK_DOWN,
     POWER_OFF,
     RESET,     ///< the board restarts at once
-    WATCHDOG,  ///< the watchdog bites without a cause
+    WATCHDOG,  ///< the watchdog trips without a cause
 };
 
 /// Random moves, then a fault, then rest.

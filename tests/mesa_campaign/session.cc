@@ -24,10 +24,10 @@ constexpr std::int64_t STEPS_PER_REV = 200, COUNTS_PER_STEP = 20;
 constexpr std::int64_t INDEX_STEPS = STEPS_PER_REV / 4;
 constexpr const char *PHYSICS =
     "motor x stepgen=0 steps_per_rev=200\nencoder 0 motor=x counts_per_rev=4000 index_rev=0.25\n";
-/// Fraction of the travel of failed cycles that a step generator makes up in a cycle.
+/// Fraction of the travel of failed cycles that a step generator recovers per cycle.
 constexpr double CATCHING_UP = 0.002;
 
-/// Accelerates at random within limits; stop() brings it to rest.
+/// Accelerates at random within limits; stop() brakes to standstill.
 class Command {
   public:
     explicit Command(const Plan &plan) : plan_(plan), random_(plan.seed) {}
@@ -83,7 +83,7 @@ class IndexJudge {
         }
         written_low_ = std::min(written_low_, steps);
         written_high_ = std::max(written_high_, steps);
-        // On the index itself its level has changed once; the polarity determines the edge that latches.
+        // On the index itself, its level has changed once; the polarity selects the edge that latches.
         if (crossed_at_ < 0 && revolution(written_low_ + 1) < revolution(written_high_ - 2)) {
             crossed_at_ = good_cycles_;
         }
@@ -167,7 +167,7 @@ class Session {
   private:
     enum class State : std::uint8_t {
         RUNNING,
-        FAULTED,   ///< the operator has not seen the fault yet
+        FAULTED,   ///< the operator has not noticed the fault yet
         CLEARING,  ///< the operator has cleared the fault and checks whether it returns
     };
 
@@ -185,7 +185,7 @@ class Session {
                        what);
         }
     }
-    /// Time after which the watchdog of the board has bitten if nothing is written.
+    /// Time after which the watchdog of the board trips if nothing is written.
     std::int64_t watchdog_ns() const {
         return plan_.watchdog_ms * MS + Rig::PERIOD_NS + plan_.max_delay_ns + MS / 2;
     }
@@ -216,7 +216,7 @@ class Session {
         verdict_.losses += loss_ != mesa::PositionLoss::NONE ? 1 : 0;
         if (!isFollowed_) {
             isFollowed_ = !faulted && failed_run_ == 0;
-            return;  // there are no positions yet
+            return;  // no positions exist yet
         }
         if (state_ == State::RUNNING && faulted && loss_ == mesa::PositionLoss::NONE) {
             fail("positions: their loss is not reported with a fault");
@@ -325,7 +325,7 @@ class Session {
         rig_.pins.set("stepgen.00.enable", 1);
     }
 
-    /// The shaft is at rest: relation between the counts of the encoder and its steps.
+    /// The shaft is stopped: measures the relation between encoder counts and steps.
     void measure_frame() {
         frame_counts_ =
             static_cast<std::int64_t>(rig_.pins.get("encoder.00.rawcounts")) - COUNTS_PER_STEP * steps();
@@ -390,7 +390,7 @@ class Session {
     void be_silent(std::int64_t duration_ns) {
         const std::int64_t first_ns = std::min(duration_ns, watchdog_ns());
         rig_.wait(first_ns);
-        // The motor keeps its last rate until the watchdog bites, and then moves back.
+        // The motor keeps its last rate until the watchdog trips, and then moves back.
         allowed_steps_ += plan_.steps_per_mm * (plan_.speed * static_cast<double>(first_ns) * 1e-9 +
                                                 plan_.speed * plan_.speed / (2 * plan_.max_accel));
         if (duration_ns == first_ns) {

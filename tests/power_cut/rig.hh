@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A mill in virtual time whose journal lies on a disk that loses unsynced data: runs a program, loses its
-// power, starts again.
+// A mill in virtual time whose journal is on a disk that loses unsynced data. Runs a program, loses power,
+// and starts again.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace mw::power_cut {
 
-/// A move as the planner received it, with the active state; every bit counts.
+/// A move as received by the planner, with the active state. All bits are compared.
 struct Call {
     std::uint64_t id = 0;  ///< a different number in each run
     std::uint32_t block = 0;
@@ -37,7 +37,7 @@ struct Recording {
 /// Runs from an empty machine to its end; all errors are texts.
 class Rig {
   public:
-    /// `folder` is a separate folder; the machine's files are copied there.
+    /// `folder` must be a separate folder, into which the machine's files are copied.
     Rig(std::filesystem::path folder, journal::test::TornDisk &disk);
     ~Rig();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// After an abort, on a whole machine in virtual time: [RS274NGC]ON_ABORT_COMMAND and the next work (I1, D1).
+// Tests the state after an abort with a whole machine in virtual time: [RS274NGC]ON_ABORT_COMMAND and the
+// next work (I1, D1).
 #include <cmath>
 
 #include <fmt/format.h>
@@ -165,7 +166,7 @@ TEST_F(AbortTest, WorkRightAfterAnAbortBeginsWhereTheMachineComesToRest) {
     }
 }
 
-/// At any time of the abort, the machine stops, cleans up once, and executes the next line.
+/// An abort at any time: the machine stops, cleans up once, and executes the next line.
 TEST_F(AbortTest, AnAbortInAnyCycleLeavesAMachineThatGoesOn) {
     switch_on_with("(debug,because %d#1)\nM65 P0\n");
     constexpr double FASTEST_MM_S = 200.0, PERIOD_S = 1e-3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Arcs as CAM systems write them, ends and centres rounded, on machines with two and three axes: each runs,
-// and the motion of the machine is compared with the figures of the program.
+// Arcs as CAM systems write them, with rounded ends and centres, on machines with two and three axes. Each
+// runs, and the motion is compared with the program.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -49,7 +49,7 @@ class RoundedArcsTest : public VirtualMachineTest {
             double offset[2] = {rounded(-radius * std::cos(from), decimals),
                                 rounded(-radius * std::sin(from), decimals)};
             const double to = from + (isLeft ? sweep : -sweep);
-            // Turns back towards the middle when far away from it.
+            // Turns back towards the centre when it is far away.
             for (int i = 0; i < 2; ++i) {
                 const double end = at[i] + offset[i] + radius * (i == 0 ? std::cos(to) : std::sin(to));
                 if (std::abs(end) > 40) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Tool changes on a whole machine as configured in its INI file, faults that are acknowledged, lubrication.
-// The judge sees only the pins.
+// Tool changes with a whole machine as configured in its INI file, acknowledged faults, and lubrication. The
+// judge uses only pins.
 #include "sim/machine_file.hh"
 #include "sim/virtual_machine.hh"
 
@@ -46,7 +46,7 @@ class ChangerTest : public VirtualMachineTest {
         }
         return pin(request);
     }
-    /// The machine is stopped there from the request of the change until after the answer.
+    /// The machine is stopped there from the change request until after the answer.
     void expect_change_at(double x, double y, double z) {
         ASSERT_TRUE(run_until("tool-change")) << messages();
         const geometry::Pose there = place();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Machines whose joints are not axes, as loaded modules: joints within their limits on paths and in axis
-// jogs. The judge is that of every VirtualMachineTest.
+// Machines whose joints are not axes, as loaded modules: joints stay within their limits on paths and in axis
+// jogs. The judge is that of VirtualMachineTest.
 #include <cmath>
 
 #include "sim/machine_file.hh"
@@ -89,7 +89,7 @@ TEST_F(KinematicsTest, AnElbowStaysOnItsSide) {
             ASSERT_EQ(mdi(line), task::Progress::DONE) << line << ": " << messages();
             EXPECT_GT(side * motion().joint[1].pos_cmd, 5) << line;
         }
-        cycles(2);  // the feedback is a cycle late
+        cycles(2);  // the feedback is one cycle late
         EXPECT_NEAR(motion().carte_pos_fb[geometry::AXIS_X], -350, 1e-6);
         EXPECT_NEAR(motion().carte_pos_fb[geometry::AXIS_Y], 100, 1e-6);
         EXPECT_EQ(judge_.report(), "");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine that starts, works and ends again and again leaves nothing behind: no file, descriptor, thread,
-// process or shared memory. MILLWRIGHT_LIVES=N for more of them.
+// A machine that starts, works and ends repeatedly leaves nothing behind: no file, descriptor, thread,
+// process or shared memory. MILLWRIGHT_LIVES=N sets the number of runs.
 #include <dirent.h>
 
 #include <cstdlib>
@@ -56,7 +56,7 @@ std::map<std::string, std::size_t> held() {
     return all;
 }
 
-/// Of this process only, because others run at the same time.
+/// Only of this process, because other tests run at the same time.
 Names shared_memory() {
     Names ours;
     const std::string mark = std::to_string(::getpid());
@@ -75,7 +75,7 @@ long memory_kib() {
     return static_cast<long>(__sanitizer_get_current_allocated_bytes() / 1024);
 }
 #else
-/// The memory that the process has.
+/// The memory used by the process.
 long memory_kib() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {
@@ -106,7 +106,7 @@ class LifecycleTest : public VirtualMachineTest {
 TEST_F(LifecycleTest, NothingIsLeftBehindByManyLives) {
     const char *const wanted = std::getenv("MILLWRIGHT_LIVES");
     const int lives = wanted != nullptr ? std::atoi(wanted) : 20;
-    constexpr int FIRST = 5;  // libraries that remain loaded are loaded, pools are filled
+    constexpr int FIRST = 5;  // by then libraries are loaded and pools are filled
     for (int i = 0; i < FIRST; ++i) {
         live(i);
     }

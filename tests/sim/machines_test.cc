@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The simulated machines of configs/sim whose joints are not axes: each runs its program, and each of its
-// axes is jogged forth and back. The judge of VirtualMachineTest watches every joint in every cycle.
+// Runs the simulated machines of configs/sim whose joints are not axes: each executes its program, and each
+// axis is jogged in both directions. The judge of VirtualMachineTest checks every joint in every cycle.
 #include <string>
 
 #include "sim/virtual_machine.hh"

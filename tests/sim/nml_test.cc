@@ -35,7 +35,7 @@ constexpr std::string_view CHANNELS =
     "P xemc emcCommand {} localhost W 0 10.0 0 10\nP xemc emcStatus {} localhost R 0 10.0 0 10\n"
     "P xemc emcError {} localhost R 0 10.0 0 10\n";
 
-/// A new machine, in emergency stop.
+/// A new machine in emergency stop.
 class OneMachine {
   public:
     OneMachine() : loaded_(machine::LoadedConfig::load(MW_SOURCE_DIR "/configs/sim/mill_mm.ini", sink_)) {
@@ -366,7 +366,7 @@ TEST(NmlMachine, EveryCommandDoesThroughNmlWhatItDoesThroughTheMailbox) {
         EXPECT_EQ(comparable(status.body), expected[n].status) << name;
         ++count[status.head.state];
     }
-    // Neither side is idle: each type of end occurs.
+    // Neither side is idle, because each type of end occurs.
     EXPECT_GE(count[CommandState::DONE], 80)
         << "refused " << count[CommandState::ERROR] << ", going on " << count[CommandState::EXECUTING];
     EXPECT_GE(count[CommandState::ERROR], 70);

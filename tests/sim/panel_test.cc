@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Controls of a machine besides a screen, on a whole machine in virtual time: buttons and lamps (halui),
-// settings as pins (ini.*), and the manual tool change (hal_manualtoolchange).
+// Controls besides a screen on a whole machine in virtual time: buttons and lamps (halui), settings as pins
+// (ini.*), and manual tool change (hal_manualtoolchange).
 #include <fmt/format.h>
 
 #include "sim/machine_file.hh"

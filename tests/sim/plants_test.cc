@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The simulated mill of plants (configs/sim/plants.ini): the values of motion agree with the plants, and
-// their faults are detected. The true values are read at pins of the plants that motion does not use.
+// The simulated mill with plant models (configs/sim/plants.ini): the values of motion agree with the models,
+// and faults are detected. The true values are read at pins of the models that motion does not use.
 #include <cmath>
 
 #include "sim/virtual_machine.hh"
@@ -30,7 +30,7 @@ TEST_F(PlantsTest, HomesToTheIndexMarksAndGoesWhereItSays) {
     EXPECT_NEAR(pin("x-axis.load"), 30, PLAY + COUNT);
     EXPECT_NEAR(pin("y-axis.load"), -20, PLAY + COUNT);
     EXPECT_NEAR(pin("z-axis.load"), -10, PLAY + COUNT);
-    // From the other side: the backlash is compensated.
+    // From the other direction: the backlash is compensated.
     ASSERT_EQ(mdi("G1 X25"), task::Progress::DONE) << messages();
     cycles(300);
     EXPECT_NEAR(pin("x-axis.load"), 25, PLAY + COUNT);
@@ -38,7 +38,7 @@ TEST_F(PlantsTest, HomesToTheIndexMarksAndGoesWhereItSays) {
 
 TEST_F(PlantsTest, AProbeFindsTheTable) {
     ASSERT_EQ(mdi("G21 G90 G38.2 Z-65 F300"), task::Progress::DONE) << messages();
-    // 5 mm/s: the travel in a servo period and a count, in addition to the backlash.
+    // At 5 mm/s: travel of a servo period and one count, in addition to the backlash.
     EXPECT_NEAR(motion().probed_pos[geometry::AXIS_Z], -60.05, 0.005 + COUNT + 2 * PLAY);
     set_pin("probe.stuck-open", "1");
     cycles(5);

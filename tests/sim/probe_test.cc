@@ -82,7 +82,7 @@ TEST_F(ProbeTest, AFileThatCannotBeWrittenIsToldBeforeTheProbe) {
 }
 
 TEST_F(ProbeTest, AFullDiskStopsTheProgram) {
-    // The process sees no difference between its limit and the end of the disk.
+    // For the process, this limit and a full disk look the same.
     rlimit before{};
     ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
     const rlimit none{0, before.rlim_max};

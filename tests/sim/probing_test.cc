@@ -179,7 +179,7 @@ TEST_F(ProbingTest, ABoreIsFoundFromBesideItsCentre) {
     EXPECT_NEAR(told("width X"), 34.7, 2 * CLOSE_MM);
     EXPECT_NEAR(told("width X [-\\d.]+ Y"), 34.7, 2 * CLOSE_MM);
     EXPECT_NEAR(x(), 21.2, CLOSE_MM) << "it ends at the centre";
-    // G55 has its zero there.
+    // G55 has its zero at this position.
     EXPECT_EQ(probe("G21 G90 G55\n(debug,here #5420 #5421)\nG54\nM2\n", bore(21.2, -5.6, 17.35)),
               task::Progress::DONE);
     EXPECT_NEAR(told("here"), 0, 1e-6) << text_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A complete machine in virtual time: start from line, and leaving a paused program and returning to it. The
+// A whole machine in virtual time: start from line, and leaving a paused program and returning to it. The
 // judge knows the programmed path and checks every commanded sample.
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every switchable kinematics as a loaded module: to each of its types and back by M68 and M66, with moves in
-// each. Joints are stopped while the type changes (the judge of every VirtualMachineTest detects steps).
-// Identity kinematics shows joints as axes. The pin shows the type.
+// Tests every switchable kinematics as a loaded module: switches to each type and back with M68 and M66, and
+// moves in each. Joints are stopped while the type changes (the judge of VirtualMachineTest detects steps).
+// With identity kinematics, joints are axes. The pin shows the type.
 #include <cmath>
 
 #include "sim/machine_file.hh"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Synchronised passes (G33, G76, G95) on a simulated spindle, judged in machine coordinates against the angle
-// that the spindle's encoder shows, in every path mode, with and without jerk limits, in mm and inch.
+// Synchronized passes (G33, G76, G95) on a simulated spindle, compared in machine coordinates with the angle
+// of the spindle's encoder, in every path mode, with and without jerk limits, in mm and inch.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -17,11 +17,11 @@ namespace {
 constexpr double T = 1e-3;
 /// Fraction of the lead.
 constexpr double TOLERANCE = 1e-3;
-/// As above with a feed per revolution, which follows the speed of the spindle and not its angle: a feed
-/// within 0.02 percent, over the 62 turns of a pass.
+/// As above for feed per revolution, which follows the spindle speed and not its angle: the feed is within
+/// 0.02 percent over the 62 revolutions of a pass.
 constexpr double FEED_TOLERANCE = 1.25e-2;
 constexpr double ACCELERATION = 1200;  ///< of both axes [mm/s^2]
-constexpr double JERK = 24000;         ///< [mm/s^3], if there is a limit
+constexpr double JERK = 24000;         ///< [mm/s^3], if limited
 
 struct Sample {
     double x = 0, z = 0, turns = 0;
@@ -138,7 +138,7 @@ struct Units {
 };
 constexpr Units UNITS[] = {{"G21", 1.0}, {"G20", 25.4}};
 
-/// With jerk limits, the acceleration of the start leaves a part for following the spindle.
+/// With jerk limits, the acceleration at the start reserves a part for following the spindle.
 double allowed(bool isJerkLimited, double shortest) {
     return isJerkLimited ? 1.25 * shortest : shortest;
 }
@@ -167,7 +167,7 @@ TEST_P(ThreadModes, G33KeepsDepthAndLeadToItsEnd) {
                 EXPECT_LE(j.run_in, allowed(GetParam(), shortest_way(v)));
                 EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(v)));
                 EXPECT_NEAR(j.length, 25, 1e-9) << "depth is kept to the programmed end";
-                // The same thread at any speed, except the delay of one encoder cycle.
+                // The same thread at any speed, except for the delay of one encoder cycle.
                 const double here = j.phase - std::floor(j.phase);
                 phase = std::isnan(phase) ? here : phase;
                 EXPECT_LE(std::abs(std::remainder(here - phase, 1.0)), 5e-3);
@@ -337,7 +337,7 @@ TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut) {
     for (int i = 0; i < 20000 && (trace_.empty() || trace_.back().z > -5); ++i) {
         cycle();
     }
-    // Down to two thirds within about a tenth of a second.
+    // Slows to two thirds within about a tenth of a second.
     ASSERT_TRUE(hal.values().set("spindle-rps.gain", std::to_string(2.0 / 180)).has_value());
     ASSERT_TRUE(hal.values().set("sim-spindle.scale", std::to_string(2.0 / 180)).has_value());
     for (int i = 0; i < 200000 && progress(run_) == task::Progress::STARTED; ++i) {
@@ -349,14 +349,15 @@ TEST_P(ThreadModes, TheToolFollowsASpindleThatIsSlowedByTheCut) {
     ASSERT_EQ(passes.size(), 1U);
     const Judged j = judge(passes[0], 1.5);
     EXPECT_NEAR(j.length, 25, 1e-9);
-    // Back on the same helix well before the end; the samples before the step are judged as run-in.
+    // Returns to the same helix well before the end; the samples before the step are judged as run-in.
     EXPECT_LE(j.run_in, 13);
     EXPECT_LE(j.stop, allowed(GetParam(), shortest_way(15)));
 }
 
 TEST_P(ThreadModes, AThreadThatIsTooFastIsRefusedBeforeItBegins) {
     make(GetParam());
-    // At the programmed speed the travel would suffice, but the operator has raised the spindle's speed.
+    // At the programmed speed the travel would be sufficient, but the operator has increased the spindle
+    // speed.
     ask(task::SetSpindleOverride{1.2, 0});
     start("G21 G90 G18 G94 G64\nM3 S1500\nG0 X14 Z5\nG0 X10\nG33 Z-20 K6\nG0 X14\nM2\n");
     EXPECT_EQ(finish(), task::Progress::FAILED);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random tool commands, faults, aborts and restarts against a model of both kinds of changers: the displays
-// of the machine, its file and the parameters of programs agree with the model after each.
+// Random tool commands, faults, aborts and restarts, compared with a model of both types of changer. The
+// displays of the machine, its file and the parameters of programs must agree with the model after each.
 #include <unistd.h>
 
 #include <cstdio>
@@ -67,7 +67,7 @@ struct Paper {
     }
 };
 
-/// Counts of the tested actions, so that a campaign without actions is detected.
+/// Counts of tested actions, so that a campaign without actions fails.
 struct Tried {
     int changes = 0, same = 0, faults = 0, aborts = 0, refused = 0, entries = 0, restarts = 0, named = 0,
         added = 0, removed = 0;
@@ -410,7 +410,7 @@ class ToolJudge : public ::testing::Test {
     std::string ini_;
     Paper paper_;
     Tried tried_;
-    int left_ = -1;  ///< tool of a change that was not made by hand: it may still be prepared
+    int left_ = -1;  ///< tool of a change that was not confirmed: it may still be prepared
     bool isSwapped_ = false;
 };
 

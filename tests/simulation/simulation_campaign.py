@@ -3,8 +3,8 @@
 """Compares the material simulation of the screen (web/src/lib/simulation) with a judge on random programs.
 
 usage: simulation_campaign.py RS274 [--first S] [--count N] [--log FILE] [--self-test] [--keep FOLDER]
-A log makes it resumable: seeds that it has are not run again. Exit status 1: a program differs, or the self-test finds that the
-comparison misses a planted difference.
+A run with an existing log skips the seeds in it. Exit status 1: a program differs, or the comparison misses a planted difference
+of the self-test.
 """
 import argparse
 import collections
@@ -92,7 +92,7 @@ def run_seed(seed, rs274, library, folder):
 
 
 def self_test(rs274, library, folder):
-    """A faulty library must be detected: with a tool that is too large, and with changed lists of findings."""
+    """A faulty library must be detected: one with a tool that is too large, and one with changed lists of findings."""
     failures = 0
     for seed in range(1, 7):
         text, job, _ = stock_programs.make(seed)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Judge of material removal: calculates the stock that canonical moves of rs274 leave, by brute force.
+"""Judge of material removal: calculates by brute force the stock that remains after canonical moves of rs274.
 
-Shares no code and no method with web/src/lib/simulation. The tool is put at many positions along each move, and at each position
-every point of the stock inside the tool is lowered. The points lie at random inside the squares of a grid, so that no wall lies
-on a line of points. Units: mm.
+Shares no code and no method with web/src/lib/simulation. The tool is placed at many positions along each move. At each position
+every point of the stock inside the tool is lowered. The points are at random positions in the squares of a grid, so that no wall
+lies on a line of points. Units: mm.
 """
 import math
 import re

@@ -10,7 +10,7 @@ TOP_OF_CLAMP = 4.0
 
 
 class Writer:
-    """Lines whose N words are their numbers, so that canonical calls name them."""
+    """Lines with N words that are their line numbers, so that canonical calls refer to them."""
 
     def __init__(self):
         self.lines = []
@@ -110,7 +110,7 @@ class Program:
         self.end()
 
     def vertical_arc(self, plane, first, second):
-        """Half a circle up or down, along X or along Y."""
+        """A half circle up or down, along X or Y."""
         begin, z, radius = self.place(), self.depth(), self.rng.uniform(1.5, 3)
         self.begin(begin, z)
         along = 0 if first == 'X' else 1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A scope in which this thread must not touch the heap: every realtime entry point has a test that runs
-// inside one. Link mw_testing_guard, which replaces malloc and free of the test program.
+// A scope in which this thread must not use the heap; every realtime entry point has such a test. Link
+// mw_testing_guard, which replaces malloc and free of the test program.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,9 @@ namespace mw::testing {
 
 /// Counts this thread's calls of malloc, free and related functions (including new and delete) during its
 /// lifetime.
-///
-///     AllocationGuard guard;
-///     machine.step();
-///     EXPECT_EQ(guard.calls(), 0U);
+/// AllocationGuard guard;
+/// machine.step();
+/// EXPECT_EQ(guard.calls(), 0U);
 class AllocationGuard {
   public:
     AllocationGuard() noexcept;

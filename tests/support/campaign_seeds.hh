@@ -19,9 +19,8 @@ struct CampaignSeeds {
     int count = 0;
 };
 
-/// MW_CAMPAIGN_FIRST (default 1) and MW_CAMPAIGN_SEEDS. A value that is no number above 0, or another
-/// variable that begins with MW_CAMPAIGN_, is a failure of the test: a campaign that does nothing must not
-/// pass.
+/// MW_CAMPAIGN_FIRST (default 1) and MW_CAMPAIGN_SEEDS. The test fails if a value is not a number above 0, or
+/// if another variable begins with MW_CAMPAIGN_, because a campaign without seeds must not pass.
 inline CampaignSeeds campaign_seeds(int preset) {
     CampaignSeeds seeds{1, preset};
     constexpr std::string_view PREFIX = "MW_CAMPAIGN_";

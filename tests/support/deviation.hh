@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Deviation between a trajectory and the programmed path, in order and both ways: the discrete Frechet
-// distance of two finely cut chains of points.
+// Deviation between a trajectory and the programmed path, in both directions and in order: the discrete
+// Frechet distance of two finely divided polylines.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ inline double pose_distance(const geometry::Pose &a, const geometry::Pose &b) {
     return std::max(geometry::norm_linear(d), geometry::norm_abc(d));
 }
 
-/// The chain with points no farther than `step` apart.
+/// The polyline with points at most `step` apart.
 inline std::vector<geometry::Pose> refined(const std::vector<geometry::Pose> &points, double step) {
     std::vector<geometry::Pose> out;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -33,7 +33,7 @@ inline std::vector<geometry::Pose> refined(const std::vector<geometry::Pose> &po
     return out;
 }
 
-/// True if both chains can be followed from start to end without going back, at most `tolerance` apart.
+/// True if both polylines can be followed from start to end without going back, at most `tolerance` apart.
 inline bool isWithinInOrder(const std::vector<geometry::Pose> &samples,
                             const std::vector<geometry::Pose> &path, double tolerance) {
     std::vector<std::size_t> reach{0};
@@ -44,8 +44,8 @@ inline bool isWithinInOrder(const std::vector<geometry::Pose> &samples,
     for (const geometry::Pose &s : samples) {
         next.clear();
         for (const std::size_t j : reach) {
-            // With this sample the position on the path stays or advances by one, and further while it is
-            // near.
+            // For this sample the position on the path stays or advances by one point, and further while it
+            // is near.
             const std::size_t seen = next.empty() ? 0 : next.back() + 1;
             std::size_t k = std::max(j, seen);
             if (k == j && pose_distance(s, path[j]) > tolerance) {

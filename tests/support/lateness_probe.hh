@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Detects that the processors were busy with other work during a time measurement, of this computer or of the
-// host of a virtual machine. Such a measurement is not valid for the program under test.
+// Detects whether the processors were busy with other work during a time measurement, on this computer or on
+// the host of a virtual machine. Such a measurement is not valid.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace mw::testing {
 
-/// On every processor, a thread wakes each millisecond, from construction until the question.
+/// From its construction until the query, a thread on every processor wakes each millisecond.
 class LatenessProbe {
   public:
     LatenessProbe() : stolen_before_(stolen_ticks()), waited_before_us_(waited_us()) {
@@ -25,8 +25,8 @@ class LatenessProbe {
         }
     }
 
-    /// No wake-up was late by 10 ms, no program waited this long for a processor, and no host took this much
-    /// time. Ends the watch.
+    /// True if no wake-up was late by 10 ms, no program waited this long for a processor, and no host took
+    /// this much time. Ends the measurement.
     bool isCalm() { return lateness_s() < 0.01; }
 
   private:

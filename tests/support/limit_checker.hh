@@ -54,7 +54,7 @@ class LimitChecker {
         ++count_;
     }
 
-    /// After a jump that is allowed (a new position taken from feedback).
+    /// Call it after a permitted jump (a new position taken from feedback).
     void restart() { count_ = 0; }
 
     bool isWithin() const { return report_.empty(); }

@@ -81,7 +81,7 @@ inline LinearMachine measured(const std::array<double, 9> &c) {
     return m;
 }
 
-/// rotatekins: X and Y turn with C.
+/// rotatekins: X and Y rotate with C.
 inline LinearMachine turned_table() {
     LinearMachine m;
     m.name = "turned table";

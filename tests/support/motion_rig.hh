@@ -191,7 +191,7 @@ struct MotionRig {
         }
         keep_report();
     }
-    /// Settings change between moves, so the judge keeps its result and starts again with the new limits.
+    /// Settings change between moves, so the judge keeps its result and restarts with the new limits.
     void keep_report() {
         places_ = joint_report();
         checker_.reset();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Possible states of a machine after a program or a line that was interrupted.
+// Possible states of a machine after an interrupted program or line.
 #pragma once
 
 #include <optional>

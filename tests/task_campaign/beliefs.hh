@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The possible states of the machine by the facts, and the check that it is in one of them, as seen by
-// clients, at pins and on the disk.
+// The possible states of the machine according to the facts, and the check that it is in one of them, as seen
+// by clients, at pins and on the disk.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct Beliefs {
     bool isOptionalStop = true, isBlockDelete = true, isHomed = false;
     double feed_override = 1;
 
-    /// Checks of a stop: no spindle turns and no coolant flows.
+    /// Assumes a stop: no spindle turns and no coolant flows.
     void switch_devices_off();
 };
 

@@ -100,7 +100,7 @@ std::string Bench::come_up() {
             return trouble;
         }
     }
-    if (!disk_.names.contains(var)) {  // the disk has all numbers from the start
+    if (!disk_.names.contains(var)) {  // the disk has all parameters from the start
         static_cast<void>(machine_->task().save_parameters());
     }
     return bind();
@@ -169,7 +169,7 @@ void Bench::lose_client(int number) {
             slot.owner.store(NOBODY << START_BITS | 1U);
         }
     }
-    static_cast<void>(client.release());  // none of its output is sent in order
+    static_cast<void>(client.release());  // leaked: a killed client does not log off
     static_cast<void>(join(static_cast<std::size_t>(number)));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A whole machine in virtual time with several clients, a tool changer at its pins and a disk that can lose
-// what was not synced. It may be killed and started again.
+// A whole machine in virtual time with several clients, a tool changer at its pins, and a disk that can lose
+// unsynced data. It may be killed and restarted.
 #pragma once
 
 #include <array>
@@ -62,7 +62,7 @@ class Bench {
     std::string tool_table() const;
     void write_tool_table(const std::vector<Tool> &tools) const;
     std::string write_program(const std::string &text);
-    /// All requests to the writer are done.
+    /// Executes all requests to the writer.
     void flush() { writer_->work(); }
     static constexpr int MOST_LATE_MS = 120;
 

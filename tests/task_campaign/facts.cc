@@ -36,7 +36,7 @@ bool move(const Line &line, World &w) {
             to[i] = w.modes.isAbsolute ? by + origin(w.modes, i) : to[i] + by;
         }
     }
-    w.doings.at = to;  // while the interpreter reads; the axes do not move there
+    w.doings.at = to;  // while the interpreter reads; the axes do not move to it
     return std::ranges::all_of(to, [](double x) { return std::abs(x) <= LIMIT_MM; });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The meaning of lines of G-code by the manual, limited to the needs of a judge. Independent of the
-// interpreter, of task and of messages.
+// The meaning of lines of G-code according to the manual, limited to the needs of a judge. Independent of the
+// interpreter, task and messages.
 #pragma once
 
 #include <array>
@@ -29,17 +29,17 @@ struct Modes {
     bool isAbsolute = true, isInch = false;
     int system = 1;                        ///< G54 is 1
     std::array<Place, SYSTEMS> systems{};  ///< G5x
-    Place g92{}, kept_g92{};               ///< active; stored in #5211 to #5219
+    Place g92{}, kept_g92{};               ///< active offset, and the offset stored in #5211 to #5219
     bool isG92On = false;
     double tool_z = 0;  ///< G43
     Place g28{}, g30{};
-    double kept = 0;         ///< #3101, which is in the parameter file
+    double kept = 0;         ///< #3101, which is stored in the parameter file
     double feed_mm_min = 0;  ///< F
     double speed_rpm = 0;    ///< S
     bool operator==(const Modes &) const = default;
 };
 
-/// Actions of the machine; a stop keeps those that were carried out.
+/// Actions of the machine; a stop keeps those that were executed.
 struct Doings {
     int in_spindle = 0;
     std::vector<Tool> tools;
@@ -64,7 +64,7 @@ struct World {
 
 enum class Kind {
     RAPID,
-    FEED,  // values: machine units of the program, by axis
+    FEED,  // values: machine units of the program, per axis
     ABSOLUTE,
     INCREMENTAL,
     INCH,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The operators of the machine: they post commands, check that each command ends, and resume after pauses.
+// The operators of the machine: they send commands, check that each command ends, and resume after pauses.
 #pragma once
 
 #include <cstdio>

@@ -25,7 +25,7 @@ enum class Work {
     STATE,    ///< off, emergency stop, and on again
     ODD,      ///< commands that may be valid or not
     OPERATE,  ///< one client operates alone
-    CRASH,    ///< of the whole machine, at rest
+    CRASH,    ///< of the whole machine, stopped
 };
 
 enum class Upset {
@@ -72,7 +72,7 @@ struct Act {
 struct Plan {
     std::uint64_t seed = 0;
     bool isRandomChanger = false;
-    int changer_ms = 20;  ///< the answer comes after this time
+    int changer_ms = 20;  ///< the answer follows after this time
     std::vector<Tool> tools;
     std::vector<Act> acts;
 };

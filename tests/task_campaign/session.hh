@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Runs a plan: operators do the acts, the faults occur at their times; keeps the possible states of the
-// machine by the facts, and compares.
+// Runs a plan: operators perform the acts, faults occur at their times. Keeps the possible states of the
+// machine according to the facts, and compares.
 #pragma once
 
 #include <vector>
@@ -61,7 +61,7 @@ class Session : private Operators {
 
     const Plan &plan_;
     Beliefs beliefs_;
-    // --- of the current act
+    // --- state of the current act
     const Act *act_ = nullptr;
     std::int64_t began_ms_ = 0;
     std::uint64_t ended_before_ = 0;  ///< programs

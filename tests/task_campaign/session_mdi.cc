@@ -70,7 +70,7 @@ void Session::run_mdi(const Act &act) {
     }
 }
 
-/// Nothing if it has ended with an unexpected result.
+/// Empty if the line ended with an unexpected result.
 std::vector<World> Session::after_line(const Line &line, const Typed &typed,
                                        const std::vector<World> &before) {
     const messages::Progress progress = progress_of(typed.serial);

@@ -107,7 +107,7 @@ void Session::end_program_of(const Act &act, End end) {
         if (!mayFail && act.work != Work::FROM_LINE) {
             fail("work", "a program without a stop does not end");
         }
-        // A step that came too late has started it again.
+        // A late step has started it again.
         const std::uint64_t runs = status().task.programs_ended - ended_before_;
         for (std::uint64_t again = 1; again < runs; ++again) {
             stopped = stopped_again(act.blocks, stopped, beliefs_.isBlockDelete);
@@ -128,7 +128,7 @@ void Session::end_program_of(const Act &act, End end) {
 void Session::end_by_crash(const Act &act) {
     std::vector<World> before = std::move(beliefs_.worlds);
     beliefs_.worlds.clear();
-    // A step that came too late has started it again, from the state at its end.
+    // A late step has started it again, from the state at its end.
     for (std::uint64_t again = 0; again < runs_before_crash_; ++again) {
         std::vector<World> left;
         for (const World &world : before) {

@@ -48,7 +48,7 @@ void Session::begin(const Trouble &t) {
     case Upset::STEP:
         post(t.client, messages::PauseProgram{});
         cycles(t.length_ms);
-        for (int i = 0; i < 3 && isRunning(); ++i) {  // would start the program if none is running
+        for (int i = 0; i < 3 && isRunning(); ++i) {  // this would start the program if none is running
             post(t.client, messages::StepProgram{});
             cycles(t.length_ms);
         }

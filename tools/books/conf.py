@@ -15,7 +15,7 @@ language = 'en'
 smartquotes = False
 # Links to headings: page.md#heading.
 myst_heading_anchors = 4
-# No highlighting if a page names no language.
+# No highlighting for pages that name no language.
 highlight_language = 'text'
 
 html_theme = 'basic' if os.environ.get('MW_BOOKS_FOR') == 'pdf' else 'sphinx_rtd_theme'

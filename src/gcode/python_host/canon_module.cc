@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// _millwright_canon: canon calls for scripts. Names and arguments are those of LinuxCNC's scripts; `line` as
-// the first argument of moves is accepted and not used, as calls belong to the block that called the script.
+// _millwright_canon: canon calls for scripts. Names and arguments are those of LinuxCNC's scripts. `line` is
+// accepted as the first argument of moves and ignored, because calls belong to the block that called the
+// script.
 #include <pybind11/stl.h>
 
 #include <algorithm>

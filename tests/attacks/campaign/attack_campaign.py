@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Runs seeds of the attack campaign at several machines at once, and sums up. A machine serves seeds until one of them ends it.
+"""Runs seeds of the attack campaign on several machines at once, and prints the totals. A machine serves seeds until one of them
+ends it.
 
 usage: attack_campaign.py --prefix BUILD_FOLDER [--first S --count N | --seed S] [--jobs N] [--log FILE] [--self-test]
 """
@@ -46,7 +47,7 @@ class Campaign:
         with self.lock:
             print(text, flush=True)
             if self.options.log:
-                with open(self.options.log, 'a', encoding='utf-8', errors='surrogateescape') as log:  # messages may be no UTF-8
+                with open(self.options.log, 'a', encoding='utf-8', errors='surrogateescape') as log:  # messages may be invalid UTF-8
                     log.write(text + '\n')
 
     def session(self, seeds, *more):
@@ -96,7 +97,7 @@ class Campaign:
                 seeds = seeds[len(answers):]
 
     def judge(self, answer):
-        """Repeats a failure alone, at most twice, if the computer was late when it occurred."""
+        """Repeats a failure alone, at most twice, if the computer was late during the failure."""
         seed, failures = answer['seed'], answer['failures']
         for _ in range(2):
             if not failures or not all(LATE in text for text in failures):
@@ -135,7 +136,7 @@ class Campaign:
         return 1 if self.counts['failed'] else 0
 
     def self_test(self):
-        """Each judge reports the fault that belongs to it."""
+        """Checks that each judge reports the fault that it must detect."""
         seed = next(seed for seed in range(1, 10_000) if [name for name, _, _ in plans.make(seed).attacks] == ['web.tokens'])
         self.found = {}
         answers, at_end = self.session([seed], '--self-test')

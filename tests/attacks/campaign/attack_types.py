@@ -13,16 +13,16 @@ TABLE = {}
 
 @dataclasses.dataclass(frozen=True)
 class Attack:
-    """`causes`: the text of the message when the attack stops the machine, None: it must not stop it. `busy`: servers that cannot answer
-    meanwhile. `isHere`: runs in the process of the session. `needs`: 'mount', 'cgroup', 'user' (another one)."""
+    """`causes`: text of the message if the attack stops the machine, None: it must not stop it. `busy`: servers that cannot
+    answer during the attack. `isHere`: runs in the process of the session. `needs`: 'mount', 'cgroup', 'user' (another user)."""
     name: str
     run: object
     causes: str | None = None
     busy: tuple = ()
     kills: tuple = ()
     isHere: bool = False
-    isLast: bool = False     # the machine serves no further seed
-    stopsTask: bool = False  # no abort can be answered meanwhile
+    isLast: bool = False     # the machine serves no further seeds
+    stopsTask: bool = False  # aborts cannot be answered during the attack
     needs: tuple = ()
     weight: float = 1.0
 
@@ -68,7 +68,7 @@ class Scene:
         self.end = time.monotonic()
 
     def wait(self, seconds):
-        """False when the time of attacks is over."""
+        """False when the time for attacks has ended."""
         time.sleep(max(0.0, min(seconds, self.deadline - time.monotonic())))
         return time.monotonic() < self.deadline
 
@@ -85,7 +85,7 @@ def carry_out(one, scene, rng):
 
 
 class Child:
-    """An attack that begins at an instant, in a separate process."""
+    """An attack that starts at a given time in a separate process."""
 
     def __init__(self, one, scene, rng, at):
         self.one = one

@@ -45,7 +45,7 @@ def edit(text):
 # Below the range from which the kernel takes the ports of clients. A client that connects to a port of that
 # range before the server listens may be connected with itself, and the server then finds its port in use.
 PORTS = range(20000, 32000)
-PORT_LOCKS = []  # held until this process ends
+PORT_LOCKS = []  # locked until this process ends
 
 
 def free_port():

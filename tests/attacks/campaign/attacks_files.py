@@ -15,7 +15,7 @@ BLKIO = pathlib.Path('/sys/fs/cgroup/blkio')
 
 @attack('files.open')
 def open_odd(scene, rng):
-    """Programs that are no files, opened by a Python client while another program runs."""
+    """Programs that are not files, opened by a Python client while another program runs."""
     paths = ['/dev/zero', '/dev/ptmx', '/dev/stdin', str(scene.nc / 'pipe.ngc'), str(scene.nc), '/proc/self/mem', str(scene.nc / 'loop.ngc'), '/nothing']
     rng.shuffle(paths)
     code = f'import linuxcnc\nc = linuxcnc.command()\nfor p in {paths!r}:\n    c.program_open(p)\n    c.wait_complete(0.5)\n'
@@ -24,7 +24,7 @@ def open_odd(scene, rng):
 
 @attack('files.full_disk', needs=('mount',))
 def full_disk(scene, rng):
-    """Nothing can be written for a time, not even a byte."""
+    """No data can be written for some time, not even a byte."""
     blocks = scene.folder / 'filler'
     try:
         with blocks.open('wb', buffering=0) as file:

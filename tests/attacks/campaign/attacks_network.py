@@ -14,7 +14,7 @@ from attack_types import attack
 NOBODY = 65534
 OWN_CONNECTIONS = 8       # of 64: a user may use all connections of his own machine
 FOREIGN_CONNECTIONS = 40
-# Requests that both a machine that is cutting and an idle machine in AUTO mode reject.
+# Commands that are rejected both by a machine that is cutting and by an idle machine in AUTO mode.
 REJECTED = ('Null', 'JogContinuous', 'JogIncrement', 'JogAbsolute', 'LoadCompensation', 'RigidTapMove', 'OpenProgram', 'Mdi')
 
 
@@ -200,7 +200,7 @@ def web_tokens(scene, rng):
 
 @attack('nml.rubbish')
 def nml_rubbish(scene, rng):
-    """Requests that are truncated or too large, or that are no requests."""
+    """Requests that are truncated, too large, or not requests."""
     peers = []
     while scene.wait(rng.choice((0.0, 0.01))):
         with contextlib.suppress(OSError):

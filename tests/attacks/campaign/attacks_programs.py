@@ -41,11 +41,11 @@ def rubbish(_scene, rng):
 
 @attack('program.messages', causes=r'part x')
 def messages(_scene, rng):
-    """Faster than any client can read; the axes may wait until the last message."""
+    """Messages faster than any client can read; the axes may wait until the last message."""
     return f'o9 repeat [{rng.choice((100, 2000))}]\n(MSG, part {"x" * rng.choice((1, 200))})\n(DEBUG, #5420)\no9 endrepeat\n'
 
 
 @attack('program.comments')
 def comments(_scene, rng):
-    """Few enough to be read within a moment, because the axes wait for the next lines."""
+    """Few enough comments to be read quickly, because the axes wait for the next lines."""
     return ('(' + 'c' * 200 + ')\n') * rng.choice((100, 1000)) if rng.random() < 0.5 else ';' + 'x' * rng.choice((100, 240)) + '\n'

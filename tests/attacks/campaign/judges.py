@@ -193,8 +193,8 @@ def aborts(record):
 
 
 def same_messages(record):
-    """Every error that one screen shows must also appear on the other screen. Errors of the last 0.3 s may still be on their way, errors before the begin
-    belong to the previous run."""
+    """Every error shown on one screen must also appear on the other. Errors of the last 0.3 s may not have arrived yet; errors
+    before the start belong to the previous run."""
     if record.isEnding or not record.isWebUp:
         return []
     last = max([when for when, _ in record.python + record.web], default=0) - 0.3

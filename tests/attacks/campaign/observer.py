@@ -23,7 +23,8 @@ CYCLE_S = 0.001
 
 
 def sample(writer):
-    """In a separate process, because a HAL component can end with HAL. Prints one line for each reading of the sampler: [time, records]."""
+    """Runs in a separate process, because a HAL component may end with HAL. Prints one line for each reading of the sampler:
+    [time, records]."""
     import hal  # pylint: disable=import-outside-toplevel
     component = hal.component(f'observer{os.getpid()}')
     stream = hal.stream(component, hal.sampler_base, 'fffb')

@@ -28,7 +28,7 @@ EXPECTED = re.compile(r'^(configs/.*\.(ini|inc|hal|tbl|var|var\.certificate\.jso
 
 
 class Here(threading.Thread):
-    """An attack that runs in this process."""
+    """An attack that runs in the process of the session."""
 
     def __init__(self, one, scene, rng, at):
         super().__init__(daemon=True)
@@ -169,7 +169,7 @@ class Session:
         return answer
 
     def wait_end(self, events, scene):
-        """The reports that clients receive when an attack ends the machine, and the duration of the end."""
+        """Waits for the end caused by an attack: the reports that clients receive, and its duration."""
         machine = self.machine
         begin = next(event.begin for event in events if event.name.startswith('end.'))
         parts = [scene.processes[name] for name in ('task', 'realtime', 'rsh', 'nml') if scene.processes[name]]
@@ -180,7 +180,7 @@ class Session:
         return {'python': observed['python_gone'], 'web': any(state == 'gone' for _, state in observed['web_gone']) or machine.servers['web'].poll() is not None, 'terminal': text}, end_s
 
     def after(self, plan, answer, events):
-        """Servers and files after a run; the machine is on and idle again."""
+        """Checks servers and files after a run; the machine is on and idle again."""
         machine, failures = self.machine, answer['failures']
         if machine.process.poll() is not None:
             failures.append(f'process: millwright start has ended with status {machine.process.returncode}: {machine.terminal.text[-300:].decode(errors="replace")}')
@@ -191,7 +191,7 @@ class Session:
         self.recover(failures)
 
     def check_servers(self, killed, failures):
-        """Restarts the servers that have ended; an attack must have killed them."""
+        """Restarts servers that have ended; an attack must have killed them."""
         machine = self.machine
         for server, process in machine.servers.items():
             if process.poll() is None:

@@ -8,7 +8,7 @@ G59_X = '5321'
 
 
 def of_parameters(path, first, known):
-    """The text has all the numbers of the beginning, and G59 has one of the known values."""
+    """Checks that the text has all numbers of the beginning, and that G59 has one of the known values."""
     if not path.is_file():
         return [f'file: {path.name} is no file any more']
     text = path.read_text()
@@ -25,7 +25,7 @@ def of_parameters(path, first, known):
 
 
 def of_tools(path, first, known):
-    """All lines are unchanged; the diameter of T5 is one of the known values."""
+    """Checks that all lines are unchanged; the diameter of T5 is one of the known values."""
     if not path.is_file():
         return [f'file: {path.name} is no file any more']
     text = path.read_text()
@@ -39,8 +39,8 @@ def of_tools(path, first, known):
 
 
 def since(known, seen):
-    """The values that a file may have at the next look: the one that it has now, and all that were set after it. A run may not have been
-    able to write its value; what is written is never older than what was there."""
+    """Values that a file may have at the next check: the current one, and all that were set after it. A run may have been unable
+    to write its value, but the file never has an older one."""
     last = max((at for at, value in enumerate(known) if abs(value - seen) < 1e-5), default=0)
     return known[last:]
 

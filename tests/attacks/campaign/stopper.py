@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Sends aborts from fresh clients, and measures how late the computer lets an ordinary process run meanwhile.
+"""Sends aborts from new clients, and measures how late the computer runs an ordinary process.
 
-usage: stopper.py WEB_PORT RSH_PORT NML_PORT; requests as lines of the standard input, a line of JSON for each answer:
+usage: stopper.py WEB_PORT RSH_PORT NML_PORT; each line of the standard input is a request, answered by a line of JSON:
 python, web, rsh or nml (an abort by a new client of that type), lateness (all since the last request), quit.
 """
 import json

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A contour, as defined by its generator: u along the cut, h away from the part. Lengths in mm.
+// A contour as defined by its generator: u along the cut, h away from the part. Lengths in mm.
 #pragma once
 
 #include <algorithm>

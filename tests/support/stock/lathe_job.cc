@@ -41,7 +41,7 @@ class Maker {
     std::mt19937 random_;
     LatheJob job_;
     int digits_ = 3;
-    std::map<std::size_t, double> radii_;  ///< of arcs given by R, by the number of strokes with them
+    std::map<std::size_t, double> radii_;  ///< radii of arcs with R, by the number of strokes
 };
 
 /// Rounded to the digits of the program.
@@ -91,7 +91,7 @@ bool Maker::add_line(double du, double dh) {
     return true;
 }
 
-/// An arc that goes forward along the cut from its start to its end.
+/// True if an arc only moves forward along the cut from its start.
 bool isForward(const Stroke &arc) {
     const bool isValley = arc.isCounterclockwise;
     const auto isRight = [&](Place p) {
@@ -164,7 +164,7 @@ void Maker::make_contour() {
     const Place first = rounded({0.0, number(1.0, isRisingOnly ? 8.0 : 16.0)});
     job_.isMonotonic = true;
     Stroke begin{first, first, false, {}, false};
-    job_.contour.strokes.push_back(begin);  // until there is another cycle
+    job_.contour.strokes.push_back(begin);  // until another cycle
     bool isUpright = false;
     for (int tries = 0; tries < 400 && static_cast<int>(job_.contour.strokes.size()) <= count; ++tries) {
         const double fall = isRisingOnly ? 0.0 : -number(0, 6);
@@ -204,7 +204,7 @@ void Maker::make_contour() {
 void Maker::choose_start() {
     const double top = job_.contour.highest(), first = job_.contour.first().h;
     double h = top + number(0.2, 8.0);
-    if (chance(0.15) && top > first + 0.5) {  // some of the contour lies above the start
+    if (chance(0.15) && top > first + 0.5) {  // part of the contour is above the start
         h = number(first + 0.3, top);
     }
     double ahead = chance(0.25) ? 0.0 : number(0.0, 4.0);
@@ -305,7 +305,8 @@ LatheJob Maker::make() {
     choose_cycles();
     const bool isAbove = job_.start.u > job_.contour.first().u;
     if (isAbove && job_.start.h < job_.contour.highest() + job_.largest_allowance() + 0.1) {
-        job_.start = rounded({job_.contour.first().u - 1.0, job_.start.h});  // the point is in the allowance
+        job_.start =
+            rounded({job_.contour.first().u - 1.0, job_.start.h});  // the point is within the allowance
     }
     static constexpr const char *OUTSIDE[] = {"G80\n", "G0\n", "G1\n", ""};
     std::string &out = job_.program;
@@ -315,14 +316,14 @@ LatheJob Maker::make() {
     out += FIRST[pick(3)] + words_to(job_.contour.first(), job_.start, chance(0.8)) + "\n";
     for (std::size_t i = 0; i < job_.contour.strokes.size(); ++i) {
         const Stroke &stroke = job_.contour.strokes[i];
-        // When it was made, the contour had one more stroke.
+        // The contour had one more stroke when the arc was created.
         out += stroke.isArc ? arc_words(stroke, i + 2) : "G1" + words_to(stroke.to, stroke.from, false);
         out += "\n";
     }
     out += "O100 endsub\nG0" + words_to(job_.start, job_.start, true) + "\n";
     const double clear = job_.contour.highest() + job_.largest_allowance() + 10.0;
     for (std::size_t i = 0; i < job_.cycles.size(); ++i) {
-        if (i > 0) {  // away from the part, along it and back to the start
+        if (i > 0) {  // retracts from the part, moves along it, returns to the start
             const char across = job_.isFacing ? 'Z' : 'X', along = job_.isFacing ? 'X' : 'Z';
             double z = 0, x = 0;
             job_.machine({job_.start.u, clear}, z, x);

@@ -14,7 +14,7 @@ namespace mw::testing {
 /// One cycle of a job.
 struct JobCycle {
     std::string code;      ///< "71", "71.1", ... or "70"
-    double allowance = 0;  ///< D [mm]; for G70, the allowance at its end
+    double allowance = 0;  ///< D [mm]; for G70, the allowance at the end of the contour
     double step = 0;       ///< I [mm]
     bool isPocketLeft = false;
     bool isFinishing = false;

@@ -30,10 +30,10 @@ class LatheStock {
     static constexpr double NEAR = 0.02;          ///< width of the steepest walls [mm]
     static constexpr double DEPTH_SPARE = 0.005;  ///< of heights [mm]
 
-    /// Material from the contour's first point to `behind` mm after its end, up to `surface`.
+    /// Material from the first point of the contour to `behind` mm after its end, up to `surface`.
     LatheStock(const Contour &contour, double surface, double behind);
 
-    /// Moves the tool and removes the material that it meets. Returns the fault, or nothing.
+    /// Moves the tool and removes the material that it contacts. Returns the fault, or an empty text.
     std::string cut(const StockMove &move, const CutRules &rules);
     double surface_at(double u) const;
     /// The position at which more than `allowance` is left on the contour, or on its envelope without

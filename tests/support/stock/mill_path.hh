@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Judges a milled contour by the disc that the tool sweeps, in a plane. Knows nothing of how paths are
-// compensated: only distances between points, straight lines and arcs.
+// Judges a milled contour by the circle that the tool sweeps in a plane. Independent of compensation: uses
+// only distances between points, straight lines and arcs.
 #pragma once
 
 #include <algorithm>

@@ -11,7 +11,7 @@
 
 namespace mw::python {
 
-/// Keeps the instance while it is in use; without a deleter if the process owns it otherwise.
+/// Keeps the instance while it is in use; without a deleter if the process already owns it.
 using HalHandle = std::shared_ptr<hal::Instance>;
 
 /// The instance of this process: the one that it hosts or has joined; else joins the instance in

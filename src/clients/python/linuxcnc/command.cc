@@ -76,7 +76,7 @@ void Command::send(const messages::Command &command) {
             return;
         }
         serial_ = *posted;
-        // Waits for the status of the cycle that took the command, so that a later poll contains it.
+        // Waits for the status of the cycle that accepted the command, so that a later poll contains it.
         const auto isShown = [&] {
             return to.read_status().has_value() && to.status().last_command >= serial_;
         };

@@ -29,7 +29,7 @@ void View::check_alive() {
     }
     seen_ = now;
     if (const auto machine = viewer_->check_machine(); !machine.has_value()) {
-        viewer_.reset();  // the next call finds a machine that was started in the meantime
+        viewer_.reset();  // the next call finds a machine that was started after this
         throw_error(machine.error().str());
     }
 }

@@ -77,7 +77,7 @@ class Ini {
 
   private:
     static ini::IniFile load(const std::string &path) {
-        diagnostics::Sink ignored;  // other errors in the file are reported by the machine that runs it
+        diagnostics::Sink ignored;  // the machine that runs the file reports other errors
         auto file = ini::IniFile::load(path, ignored);
         if (!file) {
             throw_error(file.error().str());

@@ -63,7 +63,7 @@ class WholeFileTest(unittest.TestCase):
         self.assertEqual(set(os.listdir(self.folder)), {'part.ini', name})
 
     def test_the_name_is_that_of_the_programs_in_cpp(self):
-        """base/temporary_file.cc removes the file, too."""
+        """base/temporary_file.cc also removes the file."""
         self.half_writer()
         [name] = os.listdir(self.folder)
         self.assertRegex(name, r'^\.part\.ini\.millwright-[0-9a-v]{10}$')

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Remapped codes with Python: prolog, procedure, epilog, function; waiting points; errors.
+// Remapped codes with Python: prolog, procedure, epilog, function; synchronisation points; errors.
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// An interpreter with Python and a machine that waits: canon calls as text, "SYNC" where the machine must
-// stop.
+// An interpreter with Python and a machine that waits. Canon calls are recorded as text, and "SYNC" where the
+// machine must stop.
 #pragma once
 
 #include <unistd.h>
@@ -137,7 +137,7 @@ class Scripted {
             events.push_back(std::move(call));
         }
     }
-    /// Events up to M2's, without the usual ones.
+    /// Recorded events up to those of M2, without the usual ones.
     std::vector<std::string> story() const {
         std::vector<std::string> out_events;
         for (const std::string &event : events) {

@@ -9,7 +9,7 @@ namespace {
 
 using Events = std::vector<std::string>;
 
-/// Runs Python statements (indented here) as an O word; each failed check is an error of the program.
+/// Runs Python statements (indented here) as an O word. Each failed check is a program error.
 void check(Scripted &it, const std::string &program, const std::string &body) {
     it.owords("import emccanon, interpreter\ndef check(self, *args):\n" + body);
     EXPECT_EQ(it.run(program), Step::PROGRAM_END) << it.error();
