@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// blend: `out` goes from `in2` to `in1` while `select` goes from 0 to 1. Outside this range `out` equals the
-// nearer input, or continues along the line when the parameter `open` (bit) is true. Pins float.
+// blend: `out` changes from `in2` to `in1` while `select` changes from 0 to 1. Outside this range `out`
+// equals the nearer input, or is extrapolated while the parameter `open` (bit) is true. Pins float.
 #include "components/limit/limit_core.hh"
 #include "hal/sdk/component.hh"
 

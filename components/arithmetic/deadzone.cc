@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// deadzone: `out` is `center` while `in` is within half of `threshold` of it; outside of that, it is in minus
-// that half, so that it has no jump. Pins and parameters (center 0, threshold 1 at start) are float.
+// deadzone: `out` is `center` while `in` is within half of `threshold` of it. Outside, `out` is `in` reduced
+// by that half, so that it does not jump. Pins and parameters (center 0, threshold 1 at start) are float.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -41,7 +41,8 @@ struct Lincurve {
     }
 
   private:
-    /// LinuxCNC clamps any number of points without a message, so configurations for it may give any number.
+    /// LinuxCNC limits the number of points without a message, so configurations for it may contain any
+    /// number.
     void declare_points(Declare &d) noexcept {
         const int wanted = personality[d.index()];
         points = std::clamp(wanted, MIN_POINTS, MAX_POINTS);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// modmath: the shorter way from one number to another on a circle of numbers, as for a turret.
-//
-// The circle goes from `min-num` to `max-num` (s32 parameters, 0 and 15). While `actual` differs from
-// `desired` (s32), one of `up` and `down` (bit) is true: the direction with fewer steps, up when both are
-// equal. Without `wrap` (bit parameter, true) it is the direction of the difference. Equal: `on-target`
-// (bit). A number that is not on the circle, or an empty circle, sets neither a direction nor on-target.
+// modmath: the shorter direction from one number to another on a circle of numbers, as for a turret.
+// The circle is `min-num` to `max-num` (s32 parameters, 0 and 15). While `actual` differs from
+// `desired` (s32), one of `up` and `down` (bit) is true: the direction with fewer steps, or up if both are
+// equal. Without `wrap` (bit parameter, true) it is the direction of the difference. If they are equal,
+// `on-target`
+// (bit) is true. A number outside the circle, or an empty circle, sets neither a direction nor on-target.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

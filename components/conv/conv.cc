@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // conv_FROM_TO: `out` is `in` as another type. Built once for each pair (CONV_FROM, CONV_TO and CONV_MODULE
 // are set by the build).
-//
-// Where TO cannot hold all of FROM there is an output `out-of-range` (bit) and a parameter `clamp` (bit):
-// true makes the nearest value of such a one, false lets it wrap around. A bit is true for any integer but 0
-// and any float but those next to 0.
+// If TO cannot hold all values of FROM, there is an output `out-of-range` (bit) and a parameter `clamp`
+// (bit):
+// true uses the nearest value for such an input, false lets it wrap around. A bit is true for any integer but
+// 0
+// and any float except those close to 0.
 #include "components/conv/conv_core.hh"
 #include "hal/sdk/component.hh"
 

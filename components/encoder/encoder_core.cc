@@ -95,7 +95,7 @@ double SlowPart::velocity_of(const Stamp &latest, std::uint32_t now, const Setti
         forward_ = forward;
         last_ = latest;
     } else if (moved_) {
-        // There was no new count: the speed is at most one count in the elapsed time.
+        // No new count: the speed is at most one count in the elapsed time.
         const double seconds = static_cast<double>(now - last_.time) * SECONDS_PER_UNIT;
         const double most = seconds > 0.0 ? 1.0 / seconds : std::fabs(velocity_);
         if (std::fabs(velocity_) > most) {

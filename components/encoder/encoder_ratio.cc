@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // encoder_ratio: an electronic gear between two quadrature encoders, up to 8 pairs (`num_chan=`, 1 by
 // default, or `names=`).
-//
 // Functions: sample (as often as possible) and update (servo thread). Pins of encoder-ratio.N: master-A,
-// master-B, slave-A, slave-B, enable (bit); error (float, turns of the slave): the slave's position
-// minus the travel of the master while enabled, times master-teeth / slave-teeth. When enable falls the error
-// does not jump: the slave stays where it is. master-ppr, slave-ppr (counts a turn), master-teeth,
+// master-B, slave-A, slave-B, enable (bit); error (float, revolutions of the slave): the slave's position
+// minus the travel of the master while enabled, times master-teeth / slave-teeth. When enable becomes false,
+// the error
+// does not jump: the slave keeps its position. master-ppr, slave-ppr (counts per revolution), master-teeth,
 // slave-teeth (u32, I/O).
 #include "components/encoder/encoder_core.hh"
 #include "hal/sdk/component.hh"

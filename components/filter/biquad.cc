@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // biquad: a second-order filter, H(z) = (n0 + n1/z + n2/z^2) / (1 + d1/z + d2/z^2).
-//
-// While `enable` (bit) is false `out` is `in`. When it becomes true, `type` (u32) says where the coefficients
-// come from: 0 the parameters n0 n1 n2 d1 d2 as they are, 1 a low-pass, 2 a notch at `f0` [Hz] with quality
-// `q` (old name Q); with 1 and 2 the filter starts from rest. `valid` (bit) is false when that is not
-// possible (f0 must be below half of the sample rate, q from 0.5 to 2): in then passes on. s1, s2: inner
+// While `enable` (bit) is false, `out` is `in`. When it becomes true, `type` (u32) selects the
+// coefficients: 0 the parameters n0 n1 n2 d1 d2, 1 a low-pass, 2 a notch at `f0` [Hz] with quality
+// `q` (old name Q); with 1 and 2 the filter starts with zero state. `valid` (bit) is false if that is not
+// possible (f0 must be below half of the sample rate, q from 0.5 to 2): `out` is then `in`. s1, s2: internal
 // state. Coefficients: R. Bristow-Johnson, "Cookbook formulae for audio EQ biquad filter coefficients". The
 // structure is the transposed direct form II.
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// filter_kalman: the Kalman filter of one number. `xk-out` estimates the constant behind the noisy `zk`
+// filter_kalman: the Kalman filter of one number. `xk-out` estimates the constant value of the noisy input
+// `zk`
 // (float).
-//
-// Parameters (float): `qk`, the variance by which the true value may wander in a period, and `rk`, the
+// Parameters (float): `qk`, the variance by which the true value may change in a period, and `rk`, the
 // variance of the noise (old names Qk, Rk; both 1.17549e-38 at start). `passthrough` (bit) copies zk to
-// xk-out and lets the filter rest; `reset` (bit) is stronger: xk-out is 0 and the filter starts again, with
+// xk-out and pauses the filter. `reset` (bit) has priority: xk-out is 0 and the filter restarts with
 // variance 1. `debug` (bit) logs zk and xk-out.
 #include <cmath>
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// ilowpass: a low-pass filter between integers, to smooth the counts of a hand wheel.
-//
-// `out` (s32) follows `in` (s32) times `scale` (1024 at start), going the part `gain` (0.5 at start, 0 to 1)
-// of the way in every period. Divide what follows by `scale`. Both are parameters. What reads counts reads
-// their differences, so both sides run over the end of their 32 bits instead of stopping there.
+// ilowpass: a low-pass filter for integers, to smooth the counts of a hand wheel.
+// `out` (s32) follows `in` (s32) times `scale` (1024 at start). In every period it moves by the fraction
+// `gain`
+// (0.5 at start, 0 to 1) of the difference. Divide the scale of the following component by `scale`. Both are
+// parameters. Components that read counts use their differences, so both values wrap at 32 bits instead of
+// stopping.
 #include <cmath>
 
 #include "hal/sdk/component.hh"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // steptest: moves an axis back and forth, to find the speed and acceleration that it can reach.
-//
-// While `run` (bit) is true `position-cmd` goes between `run-low` and `run-high`, `amplitude` away from
-// `run-start`, to one side only with `dir` (s32) 1 (up) or 2 (down), and waits `pause` (s32) [s] at each end
-// once `position-fb` is within the parameter `epsilon` (0.001) of `run-target`; after that it returns to
-// run-start. `jog-plus`, `jog-minus` (bit) move it by hand. All with at most `maxvel` and `maxaccel`.
-// `running` (bit); the parameter `elapsed` [s] is the time waited. It starts at position-fb. Float where not
-// said.
+// While `run` (bit) is true `position-cmd` moves between `run-low` and `run-high`, `amplitude` away from
+// `run-start`; only to one side with `dir` (s32) 1 (up) or 2 (down). It waits `pause` (s32) [s] at each end
+// after `position-fb` is within the parameter `epsilon` (0.001) of `run-target`; at the end it returns to
+// run-start. `jog-plus`, `jog-minus` (bit) jog it. All moves use at most `maxvel` and `maxaccel`.
+// `running` (bit); the parameter `elapsed` [s] is the time waited. It starts at position-fb. Other pins are
+// float.
 #include <cmath>
 
 #include "components/machine/follower.hh"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// knob2float: a knob without ends sets a value. While `enable` (bit) is true `out` changes by `scale` (float)
-// for each count of `counts` (s32), limited to the parameters `min-out` (0) and `max-out` (1). Counts made
-// while enable is false, and those before the first run, are ignored.
+// knob2float: an endless knob sets a value. While `enable` (bit) is true `out` changes by `scale` (float) for
+// each count of `counts` (s32), limited to the parameters `min-out` (0) and `max-out` (1). Counts while
+// enable is false, and those before the first run, are ignored.
 #include "components/limit/limit_core.hh"
 #include "hal/sdk/component.hh"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // limit3: `out` follows `in`, limited to `min` and `max`, with at most `maxv` change per second and `maxa`
 // change of that per second. While `enable` (bit, true at start) is false out returns to 0 within the limits;
-// `load` (bit) sets out to in at once. `smooth-steps` (u32, 2 at start): how many periods the end of a move
-// is spread over. Other pins float, the limits start at -1e20 and 1e20.
+// `load` (bit) sets out to in at once. `smooth-steps` (u32, 2 at start): number of periods over which the end
+// of a move
+// is spread. Other pins float, the limits start at -1e20 and 1e20.
 // While the input is not a number, the output does not change.
 #include "components/limit/limit_core.hh"
 #include "hal/sdk/component.hh"

@@ -109,7 +109,7 @@ inline double Limit3::hold_before(double limit, double side, double wanted,
                                   const Reach &reach) const noexcept {
     const double room = side * (limit - out);
     if (!(room >= 0.0)) {
-        return wanted;  // The output is outside because the limit has moved; the target lies inside.
+        return wanted;  // The output is outside because the limit has moved; the target is inside.
     }
     const double fastest = stoppable_speed(room, reach.accel, reach.dt);
     if (side * wanted <= fastest) {

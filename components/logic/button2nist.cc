@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// toggle2nist, momentary2nist: one button for something with inputs to switch on and off. A press of `in`
-// (bit) makes `on` true until `is-on` shows that it is on; a press while is-on is true makes `off` true until
-// is-on is false. All pins bit. Presses in between are ignored. Built twice (BUTTON_MODULE).
+// toggle2nist, momentary2nist: one button for a device with separate inputs for on and off. A press of `in`
+// (bit) makes `on` true until `is-on` shows that the device is on; a press while is-on is true makes `off`
+// true until is-on is false. All pins bit. Presses in between are ignored. Built twice (BUTTON_MODULE).
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

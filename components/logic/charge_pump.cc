@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// charge_pump: a square wave for hardware that wants to see that software is alive.
-//
+// charge_pump: a square wave for hardware that checks whether the software is running.
 // While `enable` (bit, true at start) is true, `out` toggles with every call, `out-2` with every second,
-// `out-4` with every fourth; all are false otherwise. One instance, without number.
+// `out-4` with every fourth; otherwise all are false. One instance, without number.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// dbounce: `out` follows `in` (bit) when `in` has been steady: a counter goes up while in is true and down
-// while it is false; at `delay` (u32, 5 at start) [periods] out becomes true, at 0 false.
+// dbounce: `out` follows `in` (bit) when `in` has been constant: a counter increases while in is true and
+// decreases while it is false; at `delay` (u32, 5 at start) [periods] out becomes true, at 0 false.
 #include "components/logic/debouncer.hh"
 #include "hal/sdk/component.hh"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// estop_latch: keeps a fault until it is gone and a person resets it. Starts in the faulted state.
-//
-// Pins (bit): `ok-in` (true at start) and `fault-in` show the state of the chain; a rising edge of `reset`
-// leaves the faulted state when ok-in is true and fault-in false. `ok-out` and `fault-out` are the state;
-// `watchdog` toggles with every call while ok. Software can only help an emergency stop chain; it is not one.
+// estop_latch: latches a fault until the fault has cleared and a person resets it. Starts in the faulted
+// state.
+// Pins (bit): `ok-in` (true at start) and `fault-in` are the state of the chain; a rising edge of `reset`
+// clears the fault if ok-in is true and fault-in false. `ok-out` and `fault-out` are the state;
+// `watchdog` toggles with every call while ok. Software can only support an emergency stop chain; it cannot
+// replace one.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// flipflop: a rising edge of `clk` copies `data` to `out`; `set` makes it true, `reset` false (and wins).
-// `out-not` is the opposite of `out`. All pins bit; the outputs are I/O so that others may preset them.
+// flipflop: a rising edge of `clk` copies `data` to `out`; `set` makes it true, `reset` false (and has
+// priority). `out-not` is the opposite of `out`. All pins bit; the outputs are I/O so that others may preset
+// them.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

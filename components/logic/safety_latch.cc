@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// safety_latch: an error that lasts, or comes too often, makes a fault that stays until it is reset.
-//
-// In each period a counter grows by `harm` while `error-in` (bit) is true and shrinks by `heal` while it is
+// safety_latch: an error that lasts, or occurs too often, causes a fault that remains until it is reset.
+// In each period a counter increases by `harm` while `error-in` (bit) is true and decreases by `heal` while
+// it is
 // false, from 0 to `max`. When it reaches `threshold`, `error-out` becomes true and `ok-out` false;
 // `latching` (bit, true at start) keeps that until a rising edge of `reset` (bit) while error-in is false,
 // which also clears the counter; otherwise the fault ends when the counter is 0. `count` (u32) is the
 // counter. While `enable` (bit, true at start) is false, the state is faulted: ok-out is false. It starts
 // faulted with latching: reset it once. harm, heal (1), threshold (1) and max (100) are u32 inputs. Software
-// can only help an emergency stop chain; it is not one.
+// can only support an emergency stop chain; it cannot replace one.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // toggle: each press of the button `in` (bit) changes `out` (bit, I/O), which others may set too. The
-// parameter `debounce` (u32, 2 at start) is how long the button must be pressed or released [periods].
+// parameter `debounce` (u32, 2 at start) is the minimum time that the button must be pressed or released
+// [periods].
 #include "components/logic/debouncer.hh"
 #include "hal/sdk/component.hh"
 

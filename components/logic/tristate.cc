@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// tristate_bit, tristate_float: copies `in` to the I/O pin `out` while `enable` (bit) is true and leaves it
-// alone otherwise, so that several can drive one signal. Built once for each type (TRISTATE_TYPE and
-// TRISTATE_MODULE).
+// tristate_bit, tristate_float: copies `in` to the I/O pin `out` while `enable` (bit) is true and does not
+// write it otherwise, so that several instances can drive one signal. Built once for each type (TRISTATE_TYPE
+// and TRISTATE_MODULE).
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

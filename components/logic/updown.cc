@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// updown: `count` (s32) goes up by one at each rising edge of `countup` (bit), down at each of `countdown`;
+// updown: `count` (s32) increases by one at each rising edge of `countup` (bit) and decreases at each of
+// `countdown`;
 // it is 0 while `reset` (bit) is true.
-//
-// Parameters: `clamp` (bit) holds count between `min` (s32, 0) and `max` (s32, 2147483647); `wrap` (bit,
-// stronger than clamp) continues at the other end instead. Without both it runs over the ends of its type.
+// Parameters: `clamp` (bit) keeps count between `min` (s32, 0) and `max` (s32, 2147483647); `wrap` (bit,
+// takes priority over clamp) continues at the other end instead. Without both, the count overflows as its
+// type does.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

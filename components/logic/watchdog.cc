@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// watchdog: watches that 1 to 32 inputs (`num_inputs=`) keep changing.
-//
+// watchdog: checks that 1 to 32 inputs (`num_inputs=`) keep changing.
 // `watchdog.ok-out` (bit) is true while `watchdog.enable-in` (bit) is, until `watchdog.input-N` (bit) has not
 // changed for longer than the parameter `watchdog.timeout-N` (float) [s] (0 or less, or not a number: never
 // ok). After that it stays false until enable-in becomes false and true again. Functions: watchdog.process
-// watches (fast thread); watchdog.set-timeouts takes over timeouts and restarts (servo thread).
+// checks (fast thread); watchdog.set-timeouts applies timeouts and restarts (servo thread).
 #include <cmath>
 
 #include "hal/sdk/component.hh"

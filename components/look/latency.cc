@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// latency: how regularly a thread is called, as a histogram, for latency-test and latency-histogram.
-//
+// latency: a histogram of the regularity of a thread, for latency-test and latency-histogram.
 // `count=` instances (1 to 4, default 2), one for each thread; `bin=` width of a bin of each [ns]. Function
 // latency.N. Pins: last, min, max (s32, out: intervals between two calls [ns]), jitter (s32, out: largest
-// deviation from the period [ns]), reset (bit, in: start again while true).
+// deviation from the period [ns]), reset (bit, in: restart while true).
 #include "hal/sdk/component.hh"
 #include "hal/tools/view/latency_block.hh"
 

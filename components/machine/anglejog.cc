@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // anglejog: jogs two axes along a line at an angle with one wheel.
-//
 // While `enable-in` (bit) is true each count of `counts-in` (s32) moves a point on the line by the scale,
 // with at most `max-vel` and `max-accel`; `coscounts` and `sincounts` (s32) are its coordinates in units of
 // `current-scale-out`, which is the scale divided by `iscale-factor` (s32, 10000 at start).
-// `angle-degrees-in`, `scale-in` and iscale-factor are read while enable-in is false and at the start
-// only; those in use are `current-angle-degrees`, `current-scale`. Others: enable-out, active (bit);
+// `angle-degrees-in`, `scale-in` and iscale-factor are read only while enable-in is false and at the start;
+// the active values are `current-angle-degrees`, `current-scale`. Others: enable-out, active (bit);
 // current-mag, current-vel; cos-accel-fraction, sin-accel-fraction: the parts of `accel-fraction-in` (1).
-// Float where not said.
+// Other pins are float.
 #include <cmath>
 #include <numbers>
 

@@ -222,8 +222,8 @@ void Bldc::read_encoder() noexcept {
     last_counts = counts;
 }
 
-/// Without hall sensors: turns the field until the index is found, or to zero, and takes that as the angle of
-/// the rotor.
+/// Without hall sensors: rotates the field until the index is found, or to zero, and sets this as the angle
+/// of the rotor.
 void Bldc::run_homing(double dt) noexcept {
     const bool is_init = init;
     if (is_init && !last_init) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// carousel: turns a tool carousel to a pocket, with sensors of many kinds. The manual page describes all
+// carousel: turns a tool carousel to a pocket, with many types of sensors. The manual page describes all
 // pins.
 #include <cmath>
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// laserpower: scales a laser's power with the speed of the cut, so that corners do not burn.
-//
+// laserpower: scales a laser's power with the cutting speed, so that corners do not burn.
 // While `enable` (bit) is true `out` is `power` times the ratio of `current-vel` to `requested-vel` (at most
 // 1; 1 when requested-vel is 0), at least `min-fraction`, then limited to `min-power` (0) and `max-power`
 // (100). When `distance-to-go` to the end of a move is below `reduce-distance` (0), the power is also
-// reduced, down to min-fraction. While enable is false, or an input is not a number, out is 0. All others
-// float.
+// reduced, down to min-fraction. While enable is false, or an input is not a number, out is 0. Other pins
+// are float.
 #include <cmath>
 
 #include "components/limit/limit_core.hh"

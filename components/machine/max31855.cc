@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // max31855: reads MAX31855 converters of type K thermocouples through bits; `personality=` gives the number
 // of converters, up to 15, that share clock and select.
-//
-// Function max31855.N.bitbang-spi. `clk.out`, `cs.out` (bit) and `data.M.in` (bit) go to the converters.
-// Outputs: temp-celsius.M, temp-fahrenheit.M, temp-kelvin.M (float), which keep their value in a fault;
+// Function max31855.N.bitbang-spi. `clk.out`, `cs.out` (bit) and `data.M.in` (bit) are connected to the
+// converters.
+// Outputs: temp-celsius.M, temp-fahrenheit.M, temp-kelvin.M (float), which keep their value during a fault;
 // `fault.M` (bit) and `fault-flags.M` (u32): 1 open, 2 short to ground, 4 short to supply. Frame and slope:
-// data sheet 19-5793 of Maxim Integrated. From -200 to 1350 degrees C the thermocouple's curve is put right;
-// outside of it, the reading is not changed.
+// data sheet 19-5793 of Maxim Integrated. From -200 to 1350 degrees C the thermocouple's curve is corrected;
+// outside this range the reading is not changed.
 #include "components/machine/thermocouple.hh"
 #include "hal/sdk/component.hh"
 

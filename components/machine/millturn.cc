@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// millturn: kinematics of a machine that mills and turns, with three linear joints X Y Z and one rotary A.
-// Type 0 (mill): joints are the axes X Y Z A. Type 1 (turn): joint 0 is Z, joint 1 is -Y, joint 2 is X, and A
-// is a spindle. Switched through motion.switchkins-type. Pins kinstype.is-0 and is-1 (bit, out) show which is
-// active; `millturn.0.fpin` (s32) counts runs of the function millturn.0.fdemo.
+// millturn: kinematics of a mill-turn machine with three linear joints X Y Z and one rotary A. Type 0 (mill):
+// joints are the axes X Y Z A. Type 1 (turn): joint 0 is Z, joint 1 is -Y, joint 2 is X, and A is a spindle.
+// Switched by motion.switchkins-type. Pins kinstype.is-0 and is-1 (bit, out) show which is active;
+// `millturn.0.fpin` (s32) counts runs of the function millturn.0.fdemo.
 #include <atomic>
 
 #include "hal/include/kinematics.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// moveoff: offsets added to joint positions in HAL, such as to move the tool out of the way in a pause; up to
-// 9 joints (`personality=`, 3 by default). The manual page describes all pins.
+// moveoff: offsets added to joint positions in HAL, for instance to retract the tool during a pause; up to 9
+// joints (`personality=`, 3 by default). The manual page describes all pins.
 #include <cmath>
 
 #include "components/limit/limit_core.hh"
@@ -262,7 +262,7 @@ void Moveoff::read_inputs(long period_ns) noexcept {
     const double dt = seconds(period_ns);
     const bool enabled = move_enable && apply_offsets;
     if (!power_on) {
-        // Nothing can move. The offsets stay as they are, so that the feedback stays correct.
+        // Nothing can move. The offsets are kept, so that the feedback remains correct.
         for (int i = 0; i < joints; ++i) {
             joint[i].follower.planner.reset(joint[i].follower.position());
         }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // ohmic: detects that a plasma torch touches the plate, from the frequency of a voltage converter (THCAD).
-//
 // `thcad-volts` is `thcad-fullscale` (5) times the position of `velocity-in` [Hz] times `thcad-divide` (32)
 // in the range from `thcad-0-volt-freq` to `thcad-max-volt-freq` [Hz]; `ohmic-volts` is `thcad-volts` times
 // `volt-divider` (4.9). `ohmic-on` (bit) becomes true while `is-probing` (bit) is true and ohmic-volts are at
 // least `ohmic-threshold` (18), false when they are below `ohmic-low` (5). `arc-on` (bit): thcad-volts are at
-// least the full scale. Volts that are not a number count as a touch while probing, so that the torch stops.
-// Others float.
+// least the full scale. Volts that are not a number count as contact while probing, so that the torch stops.
+// Other pins are float.
 #include <cmath>
 
 #include "hal/sdk/component.hh"

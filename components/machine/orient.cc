@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// orient: the target position of a spindle that is to stop at an angle, for a position loop (M19).
-//
-// A rising edge of `enable` (bit) samples `position` [turns] and sets `command` [turns] to the next turn with
+// orient: the target position for stopping a spindle at an angle, for a position loop (M19).
+// A rising edge of `enable` (bit) samples `position` [turns] and sets `command` [turns] to the next position
+// with
 // the angle `angle` [degrees]: `mode` (s32) 0 the nearer one, 1 forwards (to larger numbers), 2 backwards.
 // While enabled `poserr` is the distance of `position` from it [degrees] and `is-oriented` (bit) is true
-// within `tolerance` [degrees] (0.5 at start). Others float.
+// within `tolerance` [degrees] (0.5 at start). Other pins are float.
 #include <cmath>
 
 #include "hal/sdk/component.hh"

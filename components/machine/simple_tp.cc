@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // simple_tp: moves one axis to a position within a speed and an acceleration.
-//
-// Function simple-tp.N.update: `current-pos` goes to `target-pos` with at most `maxvel` [per s] and
+// Function simple-tp.N.update: `current-pos` moves to `target-pos` with at most `maxvel` [per s] and
 // `maxaccel` [per s^2] while `enable` (bit) is true, and stops with maxaccel when it is false. `current-vel`
-// is its speed, `active` (bit) is true while it moves. Others float. A target that is not a number, or a
+// is its speed, `active` (bit) is true while it moves. Other pins are float. A target that is not a number,
+// or a
 // maxvel of 0 or less, stops it.
 #include "components/machine/follower.hh"
 #include "hal/sdk/component.hh"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// spindle_monitor: whether a spindle has reached its speed and whether it lost it.
-//
+// spindle_monitor: detects whether a spindle has reached its speed, and whether it has lost it.
 // After `spindle-is-on` (bit) became true, `spindle-at-speed` (bit) becomes true once `spindle-feedback` is
 // within the parameter `threshold` of `spindle-command` (float); from then on `spindle-underspeed` (bit)
-// becomes true when the feedback is slower than the command by more than threshold. Both stay until
-// spindle-is-on is false. The parameter `level` (u32) is the state: 0 off, 1 speeding up, 2 at speed, 3
+// becomes true when the feedback is slower than the command by more than threshold. Both are kept until
+// spindle-is-on is false. The parameter `level` (u32) is the state: 0 off, 1 accelerating, 2 at speed, 3
 // underspeed.
 #include <cmath>
 

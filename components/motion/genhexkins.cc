@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Kinematics of hexapods (kinematics/hexapod.hh), switchable to identity. Pins besides those of the model,
-// (out): genhexkins.last-iterations and max-iterations of the forward side, fwd-kins-fail when it found no
-// solution, correction.N of the struts; (in) genhexkins.x to c: the start of the forward search when the last
-// pose leads to no solution; skgui.x to c: the pose of the platform, with any type, for screens that draw it.
+// (out): genhexkins.last-iterations and max-iterations of the forward kinematics, fwd-kins-fail if it found
+// no solution, correction.N of the struts; (in) genhexkins.x to c: the start of the forward search if the
+// last pose leads to no solution; skgui.x to c: the pose of the platform, with any type, for screens that
+// draw it.
 #include "components/motion/iterations.hh"
 #include "components/motion/switchable.hh"
 #include "kinematics/hexapod.hh"

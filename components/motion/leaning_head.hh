@@ -8,7 +8,7 @@
 
 namespace mw::components {
 
-/// `Head` gives the axis about which the table turns. Each module has its own; the pins use `name`.
+/// `Head` defines the axis about which the table turns. Each module has its own; the pins use `name`.
 template <class Head>
 class LeaningHead {
   public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Kinematics of pentapods (kinematics/pentapod.hh). Pins (out): pentakins.last-iterations of the forward
-// side, and max-iterations, the most of a solution so far.
+// kinematics, and max-iterations, the maximum of all solutions so far.
 #include "components/motion/iterations.hh"
 #include "kinematics/pentapod.hh"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Kinematics of rose engines (kinematics/rose.hh). Pins (out): rosekins.revolutions, whole turns of the work;
-// theta_degrees, its angle within one, -180 to 180; bigtheta_degrees, with the turns.
+// Kinematics of rose engines (kinematics/rose.hh). Pins (out): rosekins.revolutions, whole revolutions of the
+// work; theta_degrees, its angle within a revolution, -180 to 180; bigtheta_degrees, including the
+// revolutions.
 #include <cerrno>
 #include <cmath>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // mux16: `out-f` (float) follows the input of `in00` to `in15` (float) that `sel3` to `sel0` (bit) select;
-// `out-s` (s32) is its whole part, the nearest possible when it does not fit.
-//
-// `use-graycode` (bit): the number is in Gray code. `suppress-no-input` (bit): no selection at all changes
-// nothing. A selection counts when it has held still for `debounce-time` [s]; until then the outputs keep
+// `out-s` (s32) is its whole part, the nearest possible value if it does not fit.
+// `use-graycode` (bit): the number is in Gray code. `suppress-no-input` (bit): selection 0 changes
+// nothing. A selection becomes active when it has been constant for `debounce-time` [s]; until then the
+// outputs keep
 // their values. Parameters `elapsed` [s] and `selected` (s32) show the debouncing.
 #include "components/conv/conv_core.hh"
 #include "components/logic/gray.hh"

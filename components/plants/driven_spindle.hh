@@ -30,7 +30,7 @@ class DrivenSpindle {
   public:
     explicit DrivenSpindle(const DrivenSpindleTraits &traits) noexcept : traits_(traits) {}
 
-    /// Turns for `dt` with the command [rev/s]; `cut` is the torque of the cut [rev/s^2].
+    /// Runs for `dt` with the command [rev/s]; `cut` is the torque of the cut [rev/s^2].
     void run(double command, double cut, double dt) noexcept {
         constexpr double STEP_S = 2e-5;
         const int steps = static_cast<int>(std::lround(dt / STEP_S));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// An axis to be homed: a motor that lags behind its command, a slide with play, a home switch on the slide
-// that bounces or fails, an encoder on the motor with an index pulse every turn. Deterministic from its seed.
+// An axis to be homed: a motor with a lag, a slide with play, a home switch on the slide that bounces or
+// fails, and an encoder on the motor with an index pulse every revolution. Deterministic from its seed.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A simulated spindle without inertia: turns as commanded, with an index at every whole turn. Realtime-safe.
+// A simulated spindle without inertia: it follows the command at once and has an index at every whole
+// revolution. Realtime-safe.
 #pragma once
 
 #include <cmath>

@@ -61,7 +61,7 @@ class SpindlePlant {
         }
         count();
     }
-    /// From now on the encoder has missed this many counts, or counted too many.
+    /// From now on the encoder has lost this many counts, or counted too many.
     void lose_counts(std::int64_t counts) noexcept {
         lost_ += counts;
         count();
@@ -104,7 +104,7 @@ class SpindlePlant {
     }
 
     SpindleTraits traits_;
-    double wanted_ = 0, heard_ = 0, since_s_ = 0;  ///< the command as given, and as the drive has received it
+    double wanted_ = 0, heard_ = 0, since_s_ = 0;  ///< the command as sent, and as received by the drive
     double drive_ = 0, speed_ = 0, turns_;
     std::int64_t counts_ = 0, lost_ = 0, zero_ = 0;
     std::int64_t mark_ = 0;   ///< whole turns below the angle of the rotor, in edges

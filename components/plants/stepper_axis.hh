@@ -19,12 +19,12 @@ struct StepperSettings {
 };
 
 /// The rotor is an inertia in the field of the steps. The torque of the field is a sine of the lag with a
-/// period of four full steps, and its amplitude falls with speed: the inductance of the windings leaves less
-/// current. That holds for driving and braking. Drag (friction and iron losses) is part of the data sheet's
-/// pull-out torque: it takes from a torque that drives and adds to one that brakes, so that pull-out is T(v)
-/// = T0 (1 - v / fastest) when driving, and T(v) + 2 drag when braking, not T0. At a lag of more than two
-/// full steps the torque reverses: the rotor falls out of step, the torque averages to zero, and drag stops
-/// it. Source: Kenjo and Sugawara, Stepping Motors and their Microprocessor Controls, 1994, chapter 4.
+/// period of four full steps. Its amplitude decreases with speed, because the inductance of the windings
+/// reduces the current. This applies to driving and braking. Drag (friction and iron losses) is part of the
+/// data sheet's pull-out torque: it reduces a driving torque and increases a braking torque. So pull-out is
+/// T(v) = T0 (1 - v / fastest) when driving, and T(v) + 2 drag when braking, not T0. At a lag of more than
+/// two full steps the torque reverses: the rotor loses synchronism, the torque averages to zero, and drag
+/// stops it. Source: Kenjo and Sugawara, Stepping Motors and their Microprocessor Controls, 1994, chapter 4.
 class StepperAxis {
   public:
     void set(const StepperSettings &settings) noexcept { settings_ = settings; }

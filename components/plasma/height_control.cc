@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The cut and its height: the target voltage, the conditions that lock the height (corners, gaps), and the
-// PID controller that holds it.
+// The height control of a cut: the target voltage, the conditions that lock the height (corners, gaps), and
+// the PID controller.
 #include <algorithm>
 #include <cmath>
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The plasma controller without HAL: one call of step() a servo period. It finds the material, starts the
-// arc, pierces, cuts while it holds the height by the arc voltage, retracts, and moves back to a safe
+// The plasma controller without HAL: one call of step() per servo period. It finds the material, starts the
+// arc, pierces, cuts while it controls the height by the arc voltage, retracts, and moves back to a safe
 // position after a fault. Z (and X, Y for consumables and recovery) moves by offset counts that motion adds
 // to its own position.
-//
-// The states and their numbers are those of plasmac (state-out). Each part knows those above it.
+// The states and their numbers are those of plasmac (state-out). Each part uses only parts above it.
 #pragma once
 
 #include <array>

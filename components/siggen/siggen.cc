@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // siggen: sine, cosine, triangle, sawtooth and square waves, up to 16 channels (`num_chan=`, 1 by default, or
 // `names=`).
-//
 // Function siggen.N.update. Pins (float): frequency [Hz] and amplitude (1 at start), offset; outputs square,
-// sine, cosine, triangle, sawtooth; clock (bit) is true in the rising half of triangle; reset (bit) holds the
-// middle of the period.
+// sine, cosine, triangle, sawtooth; clock (bit) is true in the rising half of triangle; reset (bit) keeps the
+// outputs at the middle of the period.
 #include "components/siggen/siggen_core.hh"
 #include "hal/sdk/component.hh"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// plant_stepper: a stepper motor behind the pins of a port, with its table, its play, its end stops and a
+// plant_stepper: a stepper motor at the pins of a port, with its table, backlash, end stops and a
 // home switch.
-//
-// It counts the rising edges of `step`, in the direction of `dir`, while `powered` (bit, true at start). The
-// table is at `table`, in machine units; `units-per-step` is negative for a motor that turns the other way.
-// `backlash`, `peak-acceleration` (torque at standstill divided by inertia), `fastest` (no torque is left
-// there, and less between), `microsteps` (steps for a full step of the motor), `lower-end` and `upper-end`
-// (end stops) describe the machine; `start` is where the table begins. `switch` (bit) is the level of the
-// home switch, which is actuated above `switch-at` (below it while `switch-below`); `switch-inverted` is a
-// contact that opens. `press` actuates it by hand. `slipped` and `hit` stay true once steps were lost or an
+// It counts the rising edges of `step`, in the direction of `dir`, while `powered` (bit, true at start).
+// `table` is the position of the table in machine units; `units-per-step` is negative for a reversed motor.
+// `backlash`, `peak-acceleration` (torque at standstill divided by inertia), `fastest` (the speed at which no
+// torque is
+// left), `microsteps` (steps for a full step of the motor), `lower-end` and `upper-end`
+// (end stops) describe the machine; `start` is the initial table position. `switch` (bit) is the level of the
+// home switch, which is actuated above `switch-at` (below it while `switch-below`); `switch-inverted`:
+// the contact opens. `press` actuates it by hand. `slipped` and `hit` remain true after steps were lost or an
 // end stop was hit.
 #include "components/plants/stepper_axis.hh"
 #include "hal/sdk/component.hh"

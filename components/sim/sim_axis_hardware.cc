@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // sim_axis_hardware: home and limit switches of the axes X X2 Y Y2 Z A U V, from their positions. Function
 // sim-axis-hardware.N.update.
-//
-// For each axis, here x (old names have its letter in upper case and no hyphen behind it, as Xcurrent-pos;
-// all pins float where not said): inputs x-current-pos; x-homesw-pos (1) and x-homesw-hyst (0.025), the home
-// switch is true within half of that; x-maxsw-upper, x-maxsw-lower, x-minsw-upper, x-minsw-lower: between
-// which positions the limit switches are true; x-homing (bit). `limit-offset` (0.01) is added to
+// For each axis, here x (old names have its letter in upper case without a hyphen, such as Xcurrent-pos;
+// pins are float unless stated otherwise): inputs x-current-pos; x-homesw-pos (1) and x-homesw-hyst (0.025):
+// the home
+// switch is true within half of the hysteresis; x-maxsw-upper, x-maxsw-lower, x-minsw-upper, x-minsw-lower:
+// the
+// positions between which the limit switches are true; x-homing (bit). `limit-offset` (0.01) is added to
 // x-maxsw-lower and subtracted from x-minsw-upper. Outputs (bit): x-homesw-out, x-maxsw-out, x-minsw-out;
 // x-bothsw-out one of the limits, but not while any axis homes; x-maxsw-homesw-out, x-minsw-homesw-out,
 // x-bothsw-homesw-out with the home switch too. Over all axes: limitsw-all (any bothsw), homesw-all (any home

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// sim_home_switch: a home switch and an index pulse for an axis that exists only in numbers.
-//
-// `home-sw` (bit) is true once `cur-pos` has reached `home-pos` (1 at start; below it for a negative one) and
-// false when it is back by `hysteresis` (0.1 at start), all in machine units. `index-enable` (bit, I/O) is
-// set back `index-delay-ms` (10 at start) milliseconds after it was set.
+// sim_home_switch: a home switch and an index pulse for a simulated axis.
+// `home-sw` (bit) becomes true when `cur-pos` reaches `home-pos` (1 at start; below it for a negative one)
+// and
+// false after a return by `hysteresis` (0.1 at start), all in machine units. `index-enable` (bit, I/O) is
+// cleared `index-delay-ms` (10 at start) milliseconds after it was set.
 #include "components/plants/home_switch.hh"
 #include "hal/sdk/component.hh"
 

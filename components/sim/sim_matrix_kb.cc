@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// sim_matrix_kb: the key codes of a keyboard of 8 by 8 buttons that exists only in pins. When
-// `button.cCC.rRR` (bit) changes, `out` (u32) is for a period its number, 8 * row + column, plus 0xC0 when
-// pressed and 0x80 when released; one change a period, lower columns first. Otherwise it is 0x40 while a
-// button is pressed, else 0.
+// sim_matrix_kb: the key codes of a simulated keyboard with 8 by 8 buttons. When `button.cCC.rRR` (bit)
+// changes, `out` (u32) is for one period its number, 8 * row + column, plus 0xC0 when pressed and 0x80 when
+// released; one change per period, lower columns first. Otherwise it is 0x40 while a button is pressed, else
+// 0.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

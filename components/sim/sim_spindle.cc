@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// sim_spindle: a spindle that turns as commanded, with an index.
-//
+// sim_spindle: a spindle that follows its command at once, with an index.
 // `velocity-cmd` times the parameter `scale` (1 at start) is the speed in turns per second; `position-fb` the
 // position [turns]. With `index-enable` (bit, I/O) set, the position restarts at the next whole turn and
-// the pin is set back.
+// the pin is cleared.
 #include "components/plants/spindle.hh"
 #include "hal/sdk/component.hh"
 

@@ -46,9 +46,9 @@ double clamped(double value, double limit) noexcept {
     return value > limit ? limit : (value < -limit ? -limit : value);
 }
 
-/// The velocity [steps/s] that brings the output to a command which moves at `command_velocity`, without
-/// overshoot. `error` is output minus command now; `velocity` the present one; `accel` the limit; `dt` the
-/// time to the next call.
+/// The velocity [steps/s] that brings the output without overshoot to a command that moves at
+/// `command_velocity`. `error` is output minus command now; `velocity` the current velocity; `accel` the
+/// limit; `dt` the time to the next call.
 double following_velocity(double error, double velocity, double command_velocity, double accel,
                           double dt) noexcept {
     const double relative = velocity - command_velocity;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Components that move: limits of speed and acceleration in every period, stops, and ways back.
+// Components that move: limits of speed and acceleration in every period, stops, and returns.
 #include <cmath>
 #include <random>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// threads: makes up to three realtime threads; it has no pins and may be unloaded afterwards.
-//
+// threads: creates up to three realtime threads; it has no pins and may be unloaded afterwards.
 // `name1=`, `period1=` [ns] to `name3=`, `period3=`, fastest first; without a name one thread "thread1" of 1
 // ms. `fp1=` to `fp3=` are accepted: every thread may use floating point.
 #include "hal/sdk/component.hh"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // ton, tof: the timers of IEC 61131-3. The parameter `pt` (float) [s] is the delay.
-//
-// ton: `q` (bit) becomes true when `in` has been true for pt, and false with it. tof: q becomes true with in,
-// and false when in has been false for pt. `et` (float) [s] is the time waited, until pt is reached. Built
-// twice (TIMER_MODULE, TIMER_WAITS_FOR: the state of in that is waited for).
+// ton: `q` (bit) becomes true when `in` has been true for pt, and false when in becomes false. tof: q becomes
+// true with in,
+// and false when in has been false for pt. `et` (float) [s] is the elapsed time, up to pt. Built
+// twice (TIMER_MODULE, TIMER_WAITS_FOR: the state of in that is timed).
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// edge: `out` (bit) is true for a while after an edge of `in` (bit); `out-invert` is its opposite.
-//
-// Parameters: `both` looks for both edges; else `in-edge` chooses, true (at start) the falling one, false the
-// rising. `out-width-ns` is the length of the pulse [ns], rounded up to periods; 0 gives one period.
-// `time-left-ns` and `last-in` show the state. The level of `in` at the first call is no edge.
+// edge: `out` (bit) is true for a time after an edge of `in` (bit); `out-invert` is its opposite.
+// Parameters: `both` detects both edges; otherwise `in-edge` selects, true (at start) the falling one, false
+// the
+// rising. `out-width-ns` is the length of the pulse [ns], rounded up to periods; 0 is one period.
+// `time-left-ns` and `last-in` show the state. The level of `in` at the first call is not an edge.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // histobins: a histogram of a pin, up to 200 bins.
-//
-// In each period the input that `pintype` (u32: 0 input, float; 1 input-s32; 2 input-u32; 3 input-bit) names
-// is counted in one of `nbins` (u32, 20) bins of width `binsize` (float, 1) from `minvalue` (float, 0) on, or
-// in `nextra` or `pextra` (float) below or above. `index` (s32) chooses the bin whose count is `binvalue`
+// In each period the input that `pintype` (u32: 0 input, float; 1 input-s32; 2 input-u32; 3 input-bit)
+// selects
+// is counted in one of `nbins` (u32, 20) bins of width `binsize` (float, 1) starting at `minvalue` (float,
+// 0), or
+// in `nextra` or `pextra` (float) below or above. `index` (s32) selects the bin whose count is `binvalue`
 // (float, -1 for none); `check` (s32) repeats it. Also input-min, input-max, nsamples (u32), mean and
 // variance (float; the update of B. P. Welford, or from sums of squares while `method` (bit) is true).
 // `reset` (bit) clears. `input-error` (bit): nbins above `availablebins` (s32, 200) or below 1, binsize not
-// above 0, or no such pintype; nothing is counted then. A change of nbins, binsize or minvalue clears too.
+// above 0, or an invalid pintype; nothing is counted then. A change of nbins, binsize or minvalue also
+// clears.
 #include <cmath>
 
 #include "hal/sdk/component.hh"

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// latencybins: a histogram of how late or early a thread runs, up to 1000 bins on each side.
-//
-// `latency` (s32) [ns] is the time since the run before less the period, counted in bins of `nsbinsize` (s32)
-// [ns]. `index` (s32) chooses a bin: `pbinvalue` is the count on the late side, `nbinvalue` on the early side
-// (-1 for no such bin; bin 0 is on the late side only), `check` repeats it. `maxbinnumber` (s32, 1000) bins
+// latencybins: a histogram of the latency of a thread, up to 1000 bins on each side.
+// `latency` (s32) [ns] is the time since the previous run minus the period, counted in bins of `nsbinsize`
+// (s32)
+// [ns]. `index` (s32) selects a bin: `pbinvalue` is the count on the late side, `nbinvalue` on the early side
+// (-1 if the bin does not exist; bin 0 is on the late side only), `check` repeats it. `maxbinnumber` (s32,
+// 1000) bins
 // are used; `pextra`, `nextra` count outside. latency-max, latency-min [ns], `variance` [ns^2],
 // `availablebins` (1000). `reset` (bit) clears. With nsbinsize below 1 nothing is counted in bins.
 #include <cmath>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // multiclick: single to quadruple clicks of the button `in` (bit).
-//
 // A click is a press of at most max-hold-ns; clicks at most max-space-ns apart count together. At the end of
 // click N the output N-click (single-click, double-click, triple-click, quadruple-click) becomes true for
-// output-hold-ns; N-click-only does so when it is clear that no further click follows. Parameters (u32) [ns]:
+// output-hold-ns; N-click-only does so when no further click can follow. Parameters (u32) [ns]:
 // max-hold-ns and max-space-ns (250000000 at start), output-hold-ns (100000000); `invert-input` (bit): the
-// button is false when pressed. `state` (s32): 0 idle, 2N-1 in press N, 2N behind it, 9 waiting for a
+// button is false when pressed. `state` (s32): 0 idle, 2N-1 in press N, 2N after it, 9 waiting for a
 // release.
 #include "hal/sdk/component.hh"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // oneshot: `out` (bit) is true for `width` seconds (float pin) after an edge of `in`; `out-not` is its
 // opposite.
-//
-// Parameters `rising` (true at start) and `falling` choose the edges; `retriggerable` (true at start) lets an
-// edge during the pulse restart it. `reset` (bit) ends it. `time-left` is what remains [s].
+// Parameters `rising` (true at start) and `falling` select the edges; with `retriggerable` (true at start) an
+// edge during the pulse restarts it. `reset` (bit) ends it. `time-left` is the remaining time [s].
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// time: how long `start` (bit) has been true: `hours`, `minutes`, `seconds` (u32).
-//
-// It begins again at zero when start becomes true, and stops while `pause` (bit) is true. When start
+// time: measures how long `start` (bit) has been true: `hours`, `minutes`, `seconds` (u32).
+// It starts again at zero when start becomes true, and stops while `pause` (bit) is true. If start
 // becomes false during a pause, as a program's "is running" does, the time continues after the pause.
 #include "hal/sdk/component.hh"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // timedelay: `out` (bit) becomes true when `in` has been true for `on-delay` seconds, and false when it has
-// been false for `off-delay` seconds (floats, 0.5 at start). `elapsed` is the time waited
-// so far, or at last [s].
+// been false for `off-delay` seconds (floats, 0.5 at start). `elapsed` is the current or last elapsed time
+// [s].
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// timedelta: how regularly a thread runs. All in nanoseconds, s32, since `reset` (bit) was true:
-//
-// `out` time since the run before; `min`, `max` of it; `current-error` out less the period, `current-jitter`
-// its absolute value, `jitter` the largest of those; `err` the sum of the errors, `avg-err` (float) their
+// timedelta: measures the regularity of a thread. All in nanoseconds, s32, since `reset` (bit) was true:
+// `out` time since the previous run; `min`, `max` of it; `current-error` out minus the period,
+// `current-jitter`
+// its absolute value, `jitter` the maximum of those; `err` the sum of the errors, `avg-err` (float) their
 // mean.
 #include "hal/sdk/component.hh"
 

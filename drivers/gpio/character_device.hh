@@ -31,7 +31,7 @@ class CharacterDevice final : public LineAccess {
   private:
     static constexpr std::size_t MAX_CHIPS = 16;
 
-    /// The lines of one chip and one direction, which the kernel reads or writes in one call.
+    /// The lines of one chip and one direction, which the kernel reads or writes with one call.
     struct Group {
         int file = -1;
         Direction direction = Direction::INPUT;

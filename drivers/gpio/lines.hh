@@ -40,7 +40,7 @@ struct Lines {
 /// One message for the first cycle of a failure.
 class FailureState {
   public:
-    /// Takes the result of a call; true if a failure begins with this call.
+    /// Evaluates the result of a call; true if a failure begins with this call.
     bool begins(bool good) noexcept {
         const bool begun = !good && !failing_;
         failing_ = !good;

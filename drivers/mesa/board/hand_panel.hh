@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The part of a simulated board that a person sees and touches: positions of the motors, and switches pressed
-// by hand. It is a file that another program maps, too.
+// The operator panel of a simulated board: positions of the motors, and switches actuated by hand. It is a
+// file that another program also maps.
 #pragma once
 
 #include <cstddef>

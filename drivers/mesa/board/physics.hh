@@ -76,7 +76,7 @@ struct RemotePlan {
 struct FieldPlan {
     RemoteChannel remote;
     std::string name;                    ///< name of the field in the card
-    std::uint32_t value = 0;             ///< value if there is no motor
+    std::uint32_t value = 0;             ///< value without a motor
     std::optional<std::size_t> motor{};  ///< motor whose counts are the value
     std::int64_t counts_per_rev = 0;
 };

@@ -272,7 +272,7 @@ bool Board::describe(int line, std::span<char> text) const noexcept {
 
 void Board::stop() noexcept {
     if (watchdog_ == nullptr || !written_) {
-        return;  // the outputs are off, or another host drives the board
+        return;  // the outputs are off, or another host controls the board
     }
     // The minimum time of the watchdog passes before the next register could be written.
     const std::uint32_t shortest = 0;

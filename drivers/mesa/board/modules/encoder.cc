@@ -46,8 +46,8 @@ std::optional<std::int64_t> index_edge(const Encoder &encoder, const ShaftMove &
 std::int64_t time_of_last_edge(const ShaftMove &move) {
     const std::int64_t counts =
         move.to_count > move.from_count ? move.to_count - move.from_count : move.from_count - move.to_count;
-    // Edges are in the middle of equal parts of the time, because it is not known where the move began
-    // between two edges.
+    // Edges are in the middle of equal parts of the time, because the position between two edges at the start
+    // is not known.
     return move.to_ns - (move.to_ns - move.from_ns) / (2 * counts);
 }
 
