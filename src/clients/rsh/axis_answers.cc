@@ -56,7 +56,7 @@ Answer of_joints(const Asked &asked, const char *name, const char *blank, const 
     });
 }
 
-/// LinuxCNC 2.9 reports machine units with any conversion.
+/// LinuxCNC 2.9 always reports machine units, also if the client has selected other units.
 double factor(const Asked &asked, bool isAngular) {
     return asked.settings.isOld() ? 1
            : isAngular            ? angle_factor(asked.own.angle_unit, asked.status)

@@ -46,8 +46,8 @@ class World {
     virtual int count_spindles() const = 0;
     virtual bool isBlockDeleteOn() const = 0;
     virtual bool isOptionalStopOn() const = 0;
-    /// True if waiting points take no time because nothing moves (printing, checking). Scripts then continue
-    /// at once.
+    /// True if synchronisation points take no time because nothing moves (printing, checking). Scripts then
+    /// continue at once.
     virtual bool isSynchedAtOnce() const { return false; }
 };
 

@@ -200,7 +200,7 @@ bool hasCard(const std::vector<FoundPort> &ports, const UsedPin &pin) {
 }  // namespace
 
 int user_registers(const UsedModule &module) noexcept {
-    // Version B reports its number; the first type has 3.
+    // The descriptor of version B has the number of user registers; the first version always has 3.
     return module.descriptor.gtag == Gtag::SMART_SERIAL_B
                ? std::max(module.descriptor.registers - COMMAND_REGISTERS, 3)
                : 3;

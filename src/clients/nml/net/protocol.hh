@@ -17,7 +17,7 @@ namespace mw::nml {
 enum class Operation : std::uint8_t {
     LOGIN = 1,  ///< bytes: name, a zero byte, password
     WRITE = 2,  ///< the answer contains the number of the write
-    READ = 3,   ///< number: that of the last message read
+    READ = 3,   ///< number: of the last message read
     PEEK = 4,
     WAIT = 5,  ///< as READ; answered when there is a message, or after the time limit
     CLEAR = 6,

@@ -24,7 +24,7 @@ struct ReturnValue {
     bool set = false;
 };
 
-/// Reason of the next waiting point.
+/// Reason of the next synchronisation point.
 struct Awaited {
     bool isProbe = false, is_input = false;  ///< results that the next synch() takes
     bool is_tool_change = false;             ///< a script has changed the tool, so the machine must be

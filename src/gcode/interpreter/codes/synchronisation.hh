@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Announces the state to the canon at a start, and reads the state of the machine at a waiting point.
+// Announces the state to the canon at a start, and reads the state of the machine at a synchronisation point.
 #pragma once
 
 #include "gcode/interpreter/codes/code_parts.hh"

@@ -64,7 +64,7 @@ class Flow {
     /// Counts a restart of a loop. False when the loop is endless.
     bool note_turn(const LoopTurn &turn);
 
-    /// Runs a text and its calls on a separate level. False: a waiting point is due.
+    /// Runs a text and its calls on a separate level. False: a synchronisation point is due.
     std::expected<bool, ScriptFault> execute_for_script(std::string_view text, int line);
     std::expected<bool, ScriptFault> run_nested(std::size_t base);
 

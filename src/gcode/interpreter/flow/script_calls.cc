@@ -78,7 +78,7 @@ bool ScriptCalls::call_handler(ScriptModule module, const std::string &name, con
     return take_outcome(index, std::move(outcome), parts);
 }
 
-/// Ends the step with a waiting point if a script requires one.
+/// Ends the step with a synchronisation point if a script requires one.
 bool ScriptCalls::take_waiting_point(Executor &executor) const {
     if (!sync_due_ && !executor.awaited.is_tool_change) {
         return false;
@@ -282,7 +282,7 @@ std::optional<std::string> ScriptCalls::refusal(const Scripts &scripts) const {
         return "the program has ended: a block executed before was M2 or M30";
     }
     if (sync_due_) {
-        return "a waiting point is due (probe, tool change or input): "
+        return "a synchronisation point is due (probe, tool change or input): "
                "'yield INTERP_EXECUTE_FINISH' must come before the next execute()";
     }
     return std::nullopt;

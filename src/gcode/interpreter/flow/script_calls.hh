@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Remapped codes and scripts as call levels. Blocks that a script executes run nested above its level. A
-// waiting point (probe, tool change, yield) ends the step, and the next step continues the innermost level:
-// first nested blocks, then the suspended script.
+// synchronisation point (probe, tool change, yield) ends the step, and the next step continues the innermost
+// level: first nested blocks, then the suspended script.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,8 @@ class ScriptCalls {
     bool call_oword(const CallRequest &request, const FlowParts &parts);
     /// Runs a line that begins with ;py,
     bool run_text_line(const FlowParts &parts, InterpreterView &view);
-    /// Continues the innermost level, a script, after a waiting point or after the blocks that it executed.
+    /// Continues the innermost level, a script, after a synchronisation point or after the blocks that it
+    /// executed.
     bool go_on(const FlowParts &parts);
     /// Leaves the innermost level with a value, after the epilog of a remapped code.
     bool leave(const ReturnValue &value, const FlowParts &parts);
@@ -35,7 +36,7 @@ class ScriptCalls {
     /// Levels below it belong to running scripts.
     std::size_t nested_base() const { return nested_base_; }
 
-    /// A block of a script has reached a waiting point, or the end of the program.
+    /// A block of a script has reached a synchronisation point, or the end of the program.
     void expect_sync(bool due) { sync_due_ = due; }
     void expect_end(bool due) { end_due_ = due; }
     bool isEndDue() const { return end_due_; }

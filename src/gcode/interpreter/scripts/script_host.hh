@@ -69,14 +69,14 @@ class InterpreterView {
   public:
     virtual ~InterpreterView() = default;
 
-    /// Runs a block and the subroutines that it calls. True: done; false: a waiting point (probe, tool
-    /// change, input) is due, and the script must be suspended before it executes more blocks. `line` names
-    /// the block; 0: none.
+    /// Runs a block and the subroutines that it calls. True: done; false: a synchronisation point (probe,
+    /// tool change, input) is due, and the script must be suspended before it executes more blocks. `line`
+    /// names the block; 0: none.
     virtual std::expected<bool, ScriptFault> execute(std::string_view text, int line) = 0;
     /// Canon for the calls of scripts, in program order; deliver() passes them on.
     virtual Canon &canon() = 0;
     virtual void deliver() = 0;
-    /// The next waiting point reads the result of an input (M66, WAIT) or of a probe.
+    /// The next synchronisation point reads the result of an input (M66, WAIT) or of a probe.
     virtual void expect_input() = 0;
     virtual void expect_probe() = 0;
 

@@ -31,7 +31,7 @@ struct Scripted {
     int ended_waiting = 0;  ///< number of suspended scripts that were ended
     bool open_failing = false;
 
-    /// Returns the error if the block failed, else whether it reached a waiting point.
+    /// Returns the error if the block failed, else whether it reached a synchronisation point.
     std::string execute(std::string_view block) {
         const auto done = view->execute(block, 7);
         return !done ? done.error().message : *done ? "done" : "waiting";
@@ -193,7 +193,7 @@ TEST(ScriptCalls, AWaitingScriptEndsTheStepAndGoesOnWithTheNext) {
     Scripted scripted;
     scripted.functions["waits"] = [&](const ScriptArguments &) {
         EXPECT_EQ(scripted.execute("M66 P0 L0"), "waiting");
-        EXPECT_NE(scripted.execute("G0 X1").find("waiting point is due"), std::string::npos);
+        EXPECT_NE(scripted.execute("G0 X1").find("synchronisation point is due"), std::string::npos);
         return ScriptOutcome{ScriptOutcome::Kind::WAITING, 0, {}};
     };
     scripted.rest = [&](const ScriptArguments &) {

@@ -149,7 +149,7 @@ TEST(PythonRemap, QueueBusterInExecuteSuspendsTheRestUntilTheYield) {
                 "    try:\n"
                 "        self.execute('G0 X9')\n"
                 "    except InterpreterException as error:\n"
-                "        emccanon.MESSAGE(error.error_message[:25])\n"
+                "        emccanon.MESSAGE(error.error_message[:33])\n"
                 "    yield INTERP_EXECUTE_FINISH\n"
                 "    emccanon.MESSAGE('tripped %g' % self.params[5070])\n"
                 "    self.execute('G0 X3')\n");
@@ -164,7 +164,7 @@ TEST(PythonRemap, QueueBusterInExecuteSuspendsTheRestUntilTheYield) {
     }
     EXPECT_EQ(short_story,
               (Events{"SET_FEED_RATE(10.0000)", "STRAIGHT_PROBE(2.0000",
-                      "MESSAGE(\"a waiting point is due (p\")", "SYNC", "MESSAGE(\"after 1\")",
+                      "MESSAGE(\"a synchronisation point is due (p\")", "SYNC", "MESSAGE(\"after 1\")",
                       "MESSAGE(\"tripped 1\")", "STRAIGHT_TRAVERSE(3.0000", "STRAIGHT_TRAVERSE(4.0000"}));
 }
 

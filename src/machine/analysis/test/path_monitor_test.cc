@@ -34,7 +34,7 @@ TEST(PathMonitor, MovesOfRotaryAxesAloneAreDegreesAndNoLength) {
     line.terms.isRapid = true;
     line.end = at(0, 0, 0, 90);
     monitor.on_move(at(0, 0), line);
-    line.end = at(10, 0, 0, 45);  // with X the length is that of X alone
+    line.end = at(10, 0, 0, 45);  // if X moves, the length is that of X alone
     monitor.on_move(at(0, 0, 0, 90), line);
     line.terms.isRapid = false;
     line.end = at(10, 0, 0, 15);

@@ -37,7 +37,7 @@ class RunController {
     Result<Progress> run_tap(mailbox::Serial command, const RigidTapMove &tap);
     /// An error if the machine may not run programs and MDI lines.
     Result<> check_can_run() const;
-    /// Accepts a run, which begins when the axes are stopped. `line` is that of MDI.
+    /// Accepts a run, which begins when the axes are stopped. `line`: the text of an MDI line.
     Result<Progress> begin(RunKind kind, mailbox::Serial command, mailbox::Authority rights,
                            const std::string &line = {});
     Result<Progress> pause();
@@ -68,7 +68,7 @@ class RunController {
     bool isReadingDue() const;
     /// Begins to read the program. False while the axes are not stopped.
     bool begin_reading();
-    /// Continues after a waiting point, when the machine has executed everything before it.
+    /// Continues after a synchronisation point, when the machine has executed everything before it.
     void continue_synched();
     Result<Progress> hold_motion();
 

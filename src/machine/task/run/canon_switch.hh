@@ -37,8 +37,8 @@ class CanonSwitch final : public gcode::MachineCanon,
     }
     /// True after that block has been reached.
     bool isPassing() const { return passing_; }
-    /// A value that the program has read from the running machine since forget_doubt() and that cannot be
-    /// calculated again; empty: none.
+    /// Name of a value that the program has read from the running machine and that a search cannot
+    /// calculate; empty: none since the last forget_doubt().
     const std::string &doubt() const { return doubt_; }
     void forget_doubt() { doubt_.clear(); }
 

@@ -28,7 +28,7 @@ using ProgramPath = decltype(messages::TaskStatus::program);
 /// All calls come from one thread.
 class ProgramRun {
   public:
-    /// Rejected while a run is active. `line` is that of MDI.
+    /// Rejected while a run is active. `line`: the text of an MDI line.
     Result<Progress> start(RunKind kind, mailbox::Serial command, const std::string &line = {});
     /// Path of the open program as clients see it; empty: none.
     const ProgramPath &program() const { return program_; }

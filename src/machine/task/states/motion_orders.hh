@@ -15,7 +15,8 @@ namespace mw::task {
 /// Receiver of the reason why motion has rejected a command.
 enum class RefusalIsFor : std::uint8_t { EVERYBODY, ITS_CLIENT };
 
-/// Any number of commands, in the order in which they were sent. All calls come from one thread.
+/// Keeps the commands sent to motion, in order, until they are answered. Their number is not limited. All
+/// calls come from one thread.
 class MotionOrders {
   public:
     void begin(mailbox::Serial command, motion::CommandId order, RefusalIsFor reader, std::int64_t now_ns,
