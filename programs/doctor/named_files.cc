@@ -103,7 +103,7 @@ void examine_hal_names(const IniFile &ini, diagnostics::Sink &sink) {
             const std::string name = first_word(*entry);
             if (!name.empty() && !isHalFile(ini, name)) {
                 sink.warning(label(*entry) + ": HAL file '" + name + "' is not found", entry->place,
-                             "looked beside the INI file and in the library of HAL files");
+                             "searched in the folder of the INI file and in the library of HAL files");
             }
         }
     }

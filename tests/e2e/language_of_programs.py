@@ -47,7 +47,7 @@ HAL_ERRORS = (  # a command; its error in English, German and Spanish
     ('loadrt and2', "module 'and2' is loaded already", "das Modul 'and2' ist schon geladen", "el módulo 'and2' ya está cargado"),
     ('loadrt or2 cnt=1', "module 'or2' has no parameter 'cnt'; it has", "das Modul 'or2' hat keinen Parameter 'cnt'; es hat", "el módulo 'or2' no tiene el parámetro 'cnt'; tiene"),
     ('loadusr -w false', "program 'false' ended with status 1", "das Programm 'false' endete mit dem Ergebnis 1", "el programa 'false' terminó con el estado 1"),
-    ('source nosuch.hal', "HAL file 'nosuch.hal' not found (looked in the working folder", "die HAL-Datei 'nosuch.hal' ist nicht zu finden (gesucht im Arbeitsordner",
+    ('source nosuch.hal', "HAL file 'nosuch.hal' not found (searched in the working folder", "die HAL-Datei 'nosuch.hal' ist nicht zu finden (gesucht im Arbeitsordner",
      "no se encuentra el archivo HAL 'nosuch.hal' (se ha buscado en la carpeta de trabajo"),
     ('setp and2.0.in1 [A]B', "'[A]B' needs an INI file, and none was given", "'[A]B' braucht eine INI-Datei, und keine ist angegeben", "'[A]B' necesita un archivo INI, y no se ha dado ninguno"),
     ('linkpp and2.1.in0 and2.1.in1', "warning: linkpp command is deprecated, use 'net'", "Warnung: der Befehl linkpp ist veraltet, 'net' verwenden", "aviso: la orden linkpp está obsoleta, use 'net'"),

@@ -109,7 +109,7 @@ std::vector<CycleCause> causes_of(const CycleFigures &figures) {
     if (figures.send.p999_ns > SLOW_SEND_NS || figures.send.max_ns > figures.period_ns / 2) {
         causes.push_back(
             {fmt::format("The kernel needed up to {} to accept a packet.", us(figures.send.max_ns)),
-             "Give the network card to the board alone, and its interrupt a high priority."});
+             "Use the network card only for the board, and give its interrupt a high priority."});
     }
     if (figures.late_answers > 0) {
         causes.push_back({fmt::format("{} answers came after the deadline.", figures.late_answers),

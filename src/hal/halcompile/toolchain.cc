@@ -220,7 +220,7 @@ Result<std::vector<std::string>> build(const Places &places, const BuildOrder &o
     const bool realtime = order.kind == Kind::REALTIME;
     if (realtime && !has(facts->defined, "rtapi_app_main")) {
         return fail(fmt::format("{} has no rtapi_app_main", name), {},
-                    "a realtime module starts there; a program is compiled with --userspace");
+                    "it is the entry point of a realtime module; compile a program with --userspace");
     }
     if (!realtime && !has(facts->defined, "main")) {
         return fail(fmt::format("{} has no main", name), {}, "a userspace component is a program");

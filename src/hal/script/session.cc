@@ -162,9 +162,9 @@ Result<std::string> Session::find_file(const std::string &name) const {
     const bool in_library = name.starts_with(LIBRARY_PREFIX);
     const std::string folders = joined(tried, ", ");
     const std::string looked = tried.empty() && in_library ? "there is no library folder"
-                               : tried.empty()             ? "looked in the working folder"
-                               : in_library                ? fmt::format("looked in {}", folders)
-                                            : fmt::format("looked in the working folder, {}", folders);
+                               : tried.empty()             ? "searched in the working folder"
+                               : in_library                ? fmt::format("searched in {}", folders)
+                                            : fmt::format("searched in the working folder, {}", folders);
     tried.push_back(in_library ? "" : ".");
     const std::string near = nearest_name(plain, hal_files_in(tried));
     const std::string prefix = in_library ? std::string(LIBRARY_PREFIX) : "";

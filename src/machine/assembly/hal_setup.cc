@@ -105,7 +105,7 @@ Result<> run_file_step(script::Session &session, const HalStep &step) {
     const std::string &name = words[0];
     if (!session.find_file(name).has_value()) {
         return fail("HAL file '" + name + "' is not found", step.place,
-                    "looked beside the INI file and in the library of HAL files");
+                    "searched in the folder of the INI file and in the library of HAL files");
     }
     return session.run_file(name, {words.begin() + 1, words.end()});
 }

@@ -22,7 +22,8 @@ std::optional<std::string> why_late(const ThreadTimes &before, const ThreadTimes
     const std::int64_t waited_ns = now.waited_ns - before.waited_ns;
     const char *why = "it was stopped (by a signal or a debugger), or waited for a disk";
     if (waited_ns >= gap_ns / 2) {
-        why = "other programs kept the processors busy: run fewer beside the machine, or those with 'nice'";
+        why = "other programs kept the processors busy: run fewer programs on this computer, or run them "
+              "with 'nice'";
     } else if (ran_ns >= gap_ns / 2) {
         why = "it was calculating";
     }

@@ -177,7 +177,7 @@ Flow<Finding> check_travel(Stage &stage, int joint) {
     const std::string motor = stage.motor(joint).name, name = to_upper(motor);
     const Fault off = co_await stage.enable(
         joint, "travel",
-        fmt::format("The drive of {} alone is switched on. It homes, then moves to its other end.", name));
+        fmt::format("Only the drive of {} is switched on. It homes, then moves to its other end.", name));
     if (off != Fault::NONE) {
         co_return found("travel", stage, joint, off);
     }

@@ -111,7 +111,7 @@ Flow<Finding> check_direction(Stage &stage, int joint) {
     const std::string name = to_upper(stage.motor(joint).name);
     for (int round = 0; round < ROUNDS; ++round) {
         const Fault off = co_await stage.enable(
-            joint, "direction", fmt::format("The drive of {} alone is switched on. {}", name, FREE));
+            joint, "direction", fmt::format("Only the drive of {} is switched on. {}", name, FREE));
         if (off != Fault::NONE) {
             co_return found("direction", stage, joint, off);
         }
@@ -216,7 +216,7 @@ Flow<Finding> check_scale(Stage &stage, int joint) {
     for (int round = 0; round < ROUNDS; ++round) {
         const Fault off = co_await stage.enable(
             joint, "scale",
-            fmt::format("The drive of {} alone is switched on. {}", to_upper(stage.motor(joint).name), FREE));
+            fmt::format("Only the drive of {} is switched on. {}", to_upper(stage.motor(joint).name), FREE));
         if (off != Fault::NONE) {
             finding.fault = off;
             co_return finding;
@@ -269,7 +269,7 @@ Flow<Finding> measure_backlash(Stage &stage, int joint) {
     const std::string motor = stage.motor(joint).name, name = to_upper(motor);
     const double travel = stage.plan().small(stage.axis(joint), 2), speed = stage.slow(joint);
     const Fault off = co_await stage.enable(
-        joint, "backlash", fmt::format("The drive of {} alone is switched on. {}", name, FREE));
+        joint, "backlash", fmt::format("Only the drive of {} is switched on. {}", name, FREE));
     if (off != Fault::NONE) {
         co_return found("backlash", stage, joint, off);
     }

@@ -136,7 +136,7 @@ Flow<Trial> try_limits(Stage &stage, int joint, Limits limits, double &home_coun
 Flow<Fault> enable_and_home(Stage &stage, int joint, double &home_counts) {
     const Fault off =
         co_await stage.enable(joint, "limits",
-                              fmt::format("The drive of {} alone is switched on. The axis homes, "
+                              fmt::format("Only the drive of {} is switched on. The axis homes, "
                                           "then moves faster and faster, without a tool.",
                                           to_upper(stage.motor(joint).name)));
     if (off != Fault::NONE) {

@@ -152,7 +152,7 @@ Flow<Finding> tune_servo(Stage &stage, int joint) {
     constexpr double PART = 0.5;
     const Fault off = co_await stage.enable(
         joint, "tune",
-        fmt::format("The drive of {} alone is switched on. The axis must be in the middle of its travel.",
+        fmt::format("Only the drive of {} is switched on. The axis must be in the middle of its travel.",
                     name));
     if (off != Fault::NONE) {
         finding.fault = off;
@@ -182,7 +182,7 @@ Flow<Finding> tune_servo(Stage &stage, int joint) {
          {motor + ".ff2", to_text(rounded(gains.ff2, 1e6))}});
     co_await stage.restart();
     const Fault off_again = co_await stage.enable(
-        joint, "tune", fmt::format("The drive of {} alone is switched on with its new gains.", name));
+        joint, "tune", fmt::format("Only the drive of {} is switched on with its new gains.", name));
     if (off_again != Fault::NONE) {
         finding.fault = off_again;
         co_return finding;

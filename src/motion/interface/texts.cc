@@ -203,10 +203,10 @@ std::string kinematics_fault(const Fault &fault) {
                            i);
     case FaultKind::KINEMATICS_FAILED: return "the kinematics could not reach the commanded pose";
     case FaultKind::KINEMATICS_JUMP:
-        return fmt::format(
-            "the position of joint {} would jump by {:.6g}: a pin of the kinematics changed where this moves "
-            "the joints. Change such pins only at poses where they have no effect",
-            i, fault.value);
+        return fmt::format("the position of joint {} would jump by {:.6g}: a pin of the kinematics changed "
+                           "at a pose where it moves "
+                           "the joints. Change such pins only at poses where they have no effect",
+                           i, fault.value);
     case FaultKind::NO_KINEMATICS_TYPE:
         return fmt::format("motion.switchkins-type: the kinematics has no type {:g}; the active type stays",
                            fault.value);
@@ -254,7 +254,7 @@ std::string spindle_fault(const Fault &fault) {
                            "not reverse in time, or its encoder jumped. The tap may be stuck in the hole",
                            i);
     case FaultKind::SPINDLE_LOST:
-        return fmt::format("spindle {} feedback is not a number while a move is in step with it", i);
+        return fmt::format("spindle {} feedback is not a number during a synchronized move", i);
     case FaultKind::SPINDLE_FAULT:
         return fault.value != 0 ? fmt::format("spindle {} orient fault {}", i, static_cast<int>(fault.value))
                                 : fmt::format("spindle {} amplifier fault", i);

@@ -27,7 +27,7 @@ export class RunWatch {
   private line = 0;
   /** An outcome that arrived before the status with the end. */
   private early: string | null = null;
-  /** The end of the last run, until the next one. */
+  /** How the last run has ended; null while a program runs and before the first run. */
   end: RunEnd | null = null;
   elapsed_s: number | null = null;
 
