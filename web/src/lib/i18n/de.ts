@@ -409,7 +409,7 @@ export const de: Catalogue = {
   'length.active_other': 'Die aktive Länge gehört zu keinem Werkzeug der Tabelle (G43.1, G43.2 oder eine geänderte Tabelle).',
   'length.wrong_zero': 'Ein jetzt gesetzter Nullpunkt ist für {axes} falsch, sobald die Länge des Werkzeugs in der Spindel aktiv ist.',
   'length.wrong_hint': 'Die Positionen von {axes} sind nicht die des Werkzeugs in der Spindel.',
-  'length.right_hint': 'Die Positionen sind die des Werkzeugs in der Spindel.',
+  'length.right_hint': 'Die Positionen enthalten die Länge des Werkzeugs in der Spindel.',
   'length.apply': '{code} anwenden',
   'length.apply_and': '{code} anwenden, dann {what}',
   'length.keep_and': '{what} mit der aktiven Länge',

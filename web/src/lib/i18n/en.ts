@@ -411,7 +411,7 @@ export const en = {
   'length.active_other': 'The active length is not from the tool table (G43.1, G43.2, or a changed table).',
   'length.wrong_zero': 'A zero set now is wrong for {axes} once the length of the tool in the spindle is active.',
   'length.wrong_hint': 'Positions of {axes} are not those of the tool in the spindle.',
-  'length.right_hint': 'Positions are those of the tool in the spindle.',
+  'length.right_hint': 'The positions include the length of the tool in the spindle.',
   'length.apply': 'Apply {code}',
   'length.apply_and': 'Apply {code}, then {what}',
   'length.keep_and': '{what} with the active length',

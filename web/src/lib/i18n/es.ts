@@ -409,7 +409,7 @@ export const es: Catalogue = {
   'length.active_other': 'La longitud activa no es de ninguna herramienta de la tabla (G43.1, G43.2 o una tabla modificada).',
   'length.wrong_zero': 'Un cero fijado ahora es incorrecto para {axes} cuando se active la longitud de la herramienta del husillo.',
   'length.wrong_hint': 'Las posiciones de {axes} no son las de la herramienta del husillo.',
-  'length.right_hint': 'Las posiciones son las de la herramienta del husillo.',
+  'length.right_hint': 'Las posiciones incluyen la longitud de la herramienta del husillo.',
   'length.apply': 'Aplicar {code}',
   'length.apply_and': 'Aplicar {code} y {what}',
   'length.keep_and': '{what} con la longitud activa',
