@@ -21,7 +21,7 @@ GENERATED = {
     'reference/ini.md': 'Keys of INI files',
     'reference/messages.md': 'Messages',
     'reference/nml_messages.md': 'NML messages',
-    'reference/published.md': 'What is published',
+    'reference/published.md': 'Published values',
     'reference/states.md': 'Commands and states',
     'reference/operator_messages.md': 'Operator messages',
 }

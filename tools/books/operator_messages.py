@@ -107,8 +107,8 @@ def table(head, rows):
 
 def page(root):
     german, spanish = (texts.read_po(root / 'po' / f'{language}.po') for language in ('de', 'es'))
-    lines = ['# Operator messages', '', f'Generated from the sources and from `po/`. `{HOLE}` is a number, name or letter. Messages say what happened and what to do;',
-             '[When something goes wrong](../user/when_something_goes_wrong.md) has more about the common ones. A text under *Parts of messages* appears only in other messages.']
+    lines = ['# Operator messages', '', f'This page lists the messages to operators with causes and remedies. Generated from the sources and from `po/`. `{HOLE}` is a number, name or letter.',
+             '[When something goes wrong](../user/when_something_goes_wrong.md) describes the frequent ones. A text under *Parts of messages* appears only in other messages.']
     rows = {row.text: row for row in all_rows(root)}
     for title, _, folders in AREAS:
         keys = [key for key in messages_of(root, folders) if plain(key) not in rows or not rows[plain(key)].is_help()]

@@ -306,10 +306,11 @@ std::span<const NotPublished> not_published() {
 
 std::string published_page() {
     std::string page =
-        "# What is published\n\n"
-        "For integrators who connect a machine to a shop: the values that `millwright publish` sends to a "
-        "broker as "
-        "metrics of Sparkplug B, and offers to clients of MTConnect. Generated from the table in "
+        "# Published values\n\n"
+        "This page lists the values that `millwright publish` sends to a broker as metrics of Sparkplug B, "
+        "and "
+        "provides for clients of MTConnect. It is for integrators who connect a machine to a shop. Generated "
+        "from the table in "
         "`src/clients/publish/table.cc`. # is the letter of an axis, or the number of a joint or spindle.\n\n"
         "| metric | type | unit | deadband | value | MTConnect |\n|---|---|---|---|---|---|\n";
     for (const Row &row : ROWS) {
@@ -320,12 +321,12 @@ std::string published_page() {
                         row.deadband == 0 ? std::string("each change") : fmt::format("{}", row.deadband),
                         isPlain ? field->doc() : row.doc, names(row.item));
     }
-    page +=
-        fmt::format("| {} | String | | each message | text of a message to the operator | EVENT MESSAGE |\n"
-                    "| {} | String | | each message | ERROR, TEXT or DISPLAY | |\n"
-                    "| {} | String | | each message | unique: a message that comes twice has one Id | |\n",
-                    MESSAGE_METRIC, MESSAGE_TYPE_METRIC, MESSAGE_ID_METRIC);
-    page += "\n## What is not published\n\n| field of the status | reason |\n|---|---|\n";
+    page += fmt::format(
+        "| {} | String | | each message | text of a message to the operator | EVENT MESSAGE |\n"
+        "| {} | String | | each message | ERROR, TEXT or DISPLAY | |\n"
+        "| {} | String | | each message | unique: a message that is received twice has the same Id | |\n",
+        MESSAGE_METRIC, MESSAGE_TYPE_METRIC, MESSAGE_ID_METRIC);
+    page += "\n## Values that are not published\n\n| field of the status | reason |\n|---|---|\n";
     for (const NotPublished &field : NOT_PUBLISHED) {
         page += fmt::format("| {} | {} |\n", field.field, field.reason);
     }

@@ -190,18 +190,18 @@ std::string ini_reference(std::span<const IniKey> of_clients) {
     std::vector<IniKey> keys = all_ini_keys();
     keys.insert(keys.end(), of_clients.begin(), of_clients.end());
     std::ranges::stable_sort(keys, {}, [](const IniKey &key) { return key.section; });
-    std::string page =
-        "# Keys of INI files\n\n"
-        "Made from the declarations in `src/machine/config/ini_keys.hh`, "
-        "`src/gcode/interpreter/ini_keys.hh`,\n"
-        "`src/motion/interface/parameters.hh` and `ini_keys.hh` of the clients; a test keeps it so. Lengths "
-        "are in the unit of the joint or "
-        "axis: "
-        "machine units\n"
-        "([TRAJ]LINEAR_UNITS), or degrees where it turns. A key that is not here and in no HAL file is "
-        "reported, "
-        "with the nearest\n"
-        "name; `--strict` makes that an error.\n";
+    std::string page = "# Keys of INI files\n\n"
+                       "This page lists the INI keys, for integrators. Generated from the declarations in "
+                       "`src/machine/config/ini_keys.hh`, "
+                       "`src/gcode/interpreter/ini_keys.hh`,\n"
+                       "`src/motion/interface/parameters.hh` and `ini_keys.hh` of the clients. Lengths "
+                       "are in the unit of the joint or "
+                       "axis: "
+                       "machine units\n"
+                       "([TRAJ]LINEAR_UNITS), or degrees for rotary ones. A key that is neither on this page "
+                       "nor in a HAL file is "
+                       "reported with the nearest\n"
+                       "name, with `--strict` as an error.\n";
     std::string_view section;
     for (const IniKey &key : keys) {
         if (key.section != section) {

@@ -11,14 +11,14 @@ namespace {
 std::string analog_text(const Plan &plan) {
     const std::string scale = "[SPINDLE_0]FULL_OUTPUT";
     if (plan.board == Board::MESA_7I97) {
-        return fmt::format("\n# Speed at the last analog output.\n"
+        return fmt::format("\n# Spindle speed at the last analog output.\n"
                            "setp {0}.scale {1}\n"
                            "net spindle-speed spindle.0.speed-out => {0}.value\n"
                            "net spindle-on => {0}.enable\n",
                            servo_output_name(plan, 5), scale);
     }
     const std::string terminals = board_name(plan) + ".7i76.0.0";
-    return fmt::format("\n# Speed, run and direction at the spindle terminals.\n"
+    return fmt::format("\n# Spindle speed, run and direction at the spindle terminals.\n"
                        "setp {0}.spinout-scalemax {1}\n"
                        "setp {0}.spinout-maxlim {1}\n"
                        "net spindle-speed spindle.0.speed-out-abs => {0}.spinout\n"
@@ -29,7 +29,7 @@ std::string analog_text(const Plan &plan) {
 
 std::string pwm_text(const Plan &plan) {
     const SpindleWiring &spindle = plan.wiring.spindle;
-    return fmt::format("\n# Speed by the width of pulses.\n"
+    return fmt::format("\n# Spindle speed as pulse width.\n"
                        "setp pwmgen.0.pwm-freq {}\n"
                        "setp pwmgen.0.scale [SPINDLE_0]FULL_OUTPUT\n"
                        "net spindle-on => pwmgen.0.enable\n"
@@ -41,7 +41,7 @@ std::string pwm_text(const Plan &plan) {
 std::string step_text(const Plan &plan) {
     const SpindleWiring &spindle = plan.wiring.spindle;
     const std::string generator = spindle_stepgen_name(plan);
-    std::string text = fmt::format("\n# Speed by the rate of steps [rev/s].\n"
+    std::string text = fmt::format("\n# Spindle speed as step rate [rev/s].\n"
                                    "setp {0}.position-scale {1}\n"
                                    "setp {0}.maxaccel 20\n"
                                    "setp {0}.steplen {2}\n"
@@ -128,7 +128,7 @@ std::string estop_hal(const Plan &plan) {
     const bool is_mesa = plan.hasBoard() && plan.board != Board::PARPORT;
     std::string text = heading("The emergency stop is wired in hardware; this reports it to the controller.");
     if (!pin.has_value()) {
-        text += "# No input of the emergency stop: the button of the screen acts.\n";
+        text += "# No emergency stop input: only the button of the screen is used.\n";
     }
     const std::string source = pin.has_value()
                                    ? "net estop-released " + in_pin(plan, *pin)
@@ -137,7 +137,7 @@ std::string estop_hal(const Plan &plan) {
         return text + source + " => iocontrol.0.emc-enable-in\n";
     }
     return text +
-           "# A fault of the board is an emergency stop, too.\n"
+           "# A fault of the board is also an emergency stop.\n"
            "loadrt and2 names=estop-chain\n" +
            source +
            " => estop-chain.in0\n"
@@ -162,7 +162,7 @@ std::string pendant_hal(const Plan &plan) {
         heading(
             "A handwheel at the encoder inputs of the field terminals; inputs 16 and up select the axis.") +
         "loadrt constant names=wheel-step\n" +
-        fmt::format("# Travel of a count.\nsetp wheel-step.value {}\n"
+        fmt::format("# Travel per count.\nsetp wheel-step.value {}\n"
                     "net wheel-step wheel-step.out\n"
                     "net wheel-counts {}.7i76.0.0.enc0.count\n",
                     to_text(plan.millimetres(0.0254 / 2.54)), board_name(plan));

@@ -21,9 +21,9 @@ std::string port_hal(const Plan &plan) {
         controls += fmt::format("{}{}", i == 0 ? "" : ",", i < plan.joints() ? 'p' : 'v');
     }
     const bool has_pwm = plan.spindle == Spindle::SPEED && plan.wiring.spindle.command == SpeedCommand::PWM;
-    return heading("The parallel port, and the generators of pulses on its pins.") +
+    return heading("The parallel port, and the step generators on its pins.") +
            (plan.wiring.isSimulated
-                ? "# The port is a simulated one: simulated_wires.hal has its switches and buttons.\n"
+                ? "# The port is simulated; simulated_wires.hal contains its switches and buttons.\n"
                   "loadrt sim_parport names=parport.0\n"
                 : fmt::format("loadrt hal_parport cfg=\"{} out\"\n", plan.wiring.address)) +
            fmt::format("loadrt stepgen step_type={}{}\n", types,
@@ -50,13 +50,13 @@ std::string mesa_hal(const Plan &plan) {
     const std::string model = plan.board == Board::MESA_7I97 ? "7i97" : "7i76e";
     std::string text =
         heading(fmt::format("The Mesa {} on the network.", to_upper(model))) + "loadrt hostmot2\n" +
-        fmt::format("# virtual_board: what doctor and test runs simulate; a board in realtime ignores it.\n"
+        fmt::format("# virtual_board: the board that doctor and test runs simulate; not used in realtime.\n"
                     "loadrt hm2_eth board_ip=[HOSTMOT2]BOARD_IP config=\"{}\" virtual_board={}:{}\n",
                     mesa_config(plan), model, MOTORS_FILE) +
-        fmt::format("\n# The board switches its outputs off when no write arrives for this time [ns].\n"
+        fmt::format("\n# Watchdog: without a write for this time the board switches its outputs off [ns].\n"
                     "setp {}.watchdog.timeout_ns 20000000\n",
                     board) +
-        fmt::format("\n# A board that does not answer, or that has switched its outputs off.\n"
+        fmt::format("\n# Fault: the board does not answer, or has switched its outputs off.\n"
                     "loadrt {} names=board-fault\n"
                     "loadrt not names=board-ok\n"
                     "net packets-lost {}.packet-error-exceeded => board-fault.in0\n"
@@ -102,7 +102,7 @@ std::string stepper_text(const Plan &plan, const Motor &motor, int joint) {
 std::string servo_text(const Plan &plan, const Motor &motor, int joint) {
     const std::string output = servo_output_name(plan, motor.channel);
     const std::string encoder = fmt::format("{}.encoder.{:02d}", board_name(plan), motor.channel);
-    return fmt::format("\n# Motor {1}: the output of the controller is a speed in machine units per second.\n"
+    return fmt::format("\n# Motor {1}: the controller output is a speed [machine units/s].\n"
                        "setp pid-{2}.Pgain [JOINT_{0}]P\n"
                        "setp pid-{2}.Igain [JOINT_{0}]I\n"
                        "setp pid-{2}.Dgain [JOINT_{0}]D\n"

@@ -116,7 +116,7 @@ std::string simulated_board_hal(const Plan &plan) {
 
 std::string simulated_motors_text(const Plan &plan) {
     const bool servo = plan.is_servo;
-    std::string text = "# What is connected to the simulated board: motors, encoders and switches.\n";
+    std::string text = "# Devices at the simulated board: motors, encoders and switches.\n";
     std::string encoders, switches;
     const char *const where = servo ? "inmux=0" : "remote=0";
     each_motor(plan, [&](const Axis &axis, const Motor &motor, int) {
@@ -143,7 +143,7 @@ std::string simulated_motors_text(const Plan &plan) {
     text += servo ? "" : "remote 0 card=7i76\n";
     text += switches;
     if (plan.wiring.estop_pin.has_value()) {
-        text += fmt::format("# The button of the emergency stop is released: its contact is closed.\n"
+        text += fmt::format("# The emergency stop button is released: its contact is closed.\n"
                             "switch {} {} motor={} above_rev=-1000000\n",
                             *plan.wiring.estop_pin, where, plan.axes[0].motors[0].name);
     }

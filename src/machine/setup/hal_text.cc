@@ -86,7 +86,7 @@ class Threads {
         if (plan_.hasBaseThread()) {
             base();
         }
-        text_ += "\n# Each servo period: read, calculate, write.\n";
+        text_ += "\n# In each servo period: read, calculate, write.\n";
         read();
         add("motion-command-handler");
         add("motion-controller");
@@ -103,7 +103,7 @@ class Threads {
         return plan_.spindle == Spindle::SPEED && plan_.wiring.spindle.command == SpeedCommand::PWM;
     }
     void base() {
-        text_ += "\n# As often as steps are made: read, make pulses, write.\n";
+        text_ += "\n# In each base period: read, make step pulses, write.\n";
         add("parport.0.read", "base-thread");
         add("stepgen.make-pulses", "base-thread");
         if (hasPwm()) {

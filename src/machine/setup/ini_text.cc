@@ -37,21 +37,21 @@ std::string display_text(const Plan &plan) {
     std::string text = fmt::format("[DISPLAY]\n"
                                    "# The operator's screen, in a browser.\n"
                                    "DISPLAY = millwright\n"
-                                   "# Programs that the screen lists, and where they call subroutines from.\n"
+                                   "# Folder of programs and subroutines.\n"
                                    "PROGRAM_PREFIX = nc_files\n"
-                                   "# Steps that jogs are offered in.\n"
+                                   "# Jog increments of the screen.\n"
                                    "INCREMENTS = {}\n"
-                                   "# 1.2: feeds up to 120 % of the programmed ones.\n"
+                                   "# Maximum feed override: 1.2 is 120 %.\n"
                                    "MAX_FEED_OVERRIDE = 1.2\n",
                                    increments);
     if (plan.spindle == Spindle::SPEED) {
-        text += fmt::format("# Of the spindle [rev/min].\n"
+        text += fmt::format("# Maximum and default speed of the spindle [rev/min].\n"
                             "MAX_SPINDLE_SPEED = {0}\n"
                             "DEFAULT_SPINDLE_SPEED = {1}\n",
                             short_text(plan.spindle_max), short_text(plan.spindle_max / 4));
     }
     if (plan.kind == "lathe") {
-        text += "# Pictures show Z to the right and X (a radius) up.\n"
+        text += "# The drawing shows Z to the right and X (a radius) up.\n"
                 "LATHE = 1\n";
     }
     if (plan.kind == "foam") {
@@ -66,49 +66,50 @@ std::string display_text(const Plan &plan) {
 }
 
 std::string system_text(const Plan &plan) {
-    std::string text = "[TASK]\n"
-                       "TASK = milltask\n"
-                       "# [s]\n"
-                       "CYCLE_TIME = 0.001\n"
-                       "\n"
-                       "[RS274NGC]\n"
-                       "# Offsets and parameters that outlive a restart; written by the machine.\n"
-                       "PARAMETER_FILE = machine.var\n"
-                       "SUBROUTINE_PATH = nc_files\n"
-                       "\n"
-                       "[EMCMOT]\n"
-                       "EMCMOT = motmod\n"
-                       "# [s]\n"
-                       "COMM_TIMEOUT = 1.0\n"
-                       "# Positions are calculated so often [ns].\n"
-                       "SERVO_PERIOD = 1000000\n";
+    std::string text =
+        "[TASK]\n"
+        "TASK = milltask\n"
+        "# Period of task [s].\n"
+        "CYCLE_TIME = 0.001\n"
+        "\n"
+        "[RS274NGC]\n"
+        "# File of offsets and parameters that are kept after a restart; the machine writes it.\n"
+        "PARAMETER_FILE = machine.var\n"
+        "SUBROUTINE_PATH = nc_files\n"
+        "\n"
+        "[EMCMOT]\n"
+        "EMCMOT = motmod\n"
+        "# Only used by LinuxCNC [s].\n"
+        "COMM_TIMEOUT = 1.0\n"
+        "# Period of the motion controller [ns].\n"
+        "SERVO_PERIOD = 1000000\n";
     if (plan.hasBaseThread()) {
-        text += fmt::format("# Steps are made so often [ns]: the latency of the computer, a step, and the "
-                            "work of the thread.\n"
+        text += fmt::format("# Period of step generation [ns]: latency of the computer, step time, and run "
+                            "time of the thread.\n"
                             "BASE_PERIOD = {}\n",
                             plan.wiring.base_period_ns);
     }
     text += "\n[EMCIO]\nTOOL_TABLE = tool.tbl\n\n"
             "[HAL]\n"
-            "# Run in this order when the machine starts; each file is for one function of the machine.\n";
+            "# HAL files in the order of execution. Each file is for one function of the machine.\n";
     for (const File &file : hal_files(plan)) {
         text += file.name.starts_with("simulated_")
-                    ? "# What is not there. Remove this line when the real board is connected.\n"
+                    ? "# Simulated hardware. Remove this line when the real board is connected.\n"
                     : "";
         text += "HALFILE = " + file.name + "\n";
     }
-    text += "# Pins for buttons of your own: halui.*\nHALUI = halui\n\n";
+    text += "# Pins for additional buttons: halui.*\nHALUI = halui\n\n";
     if (plan.hasBoard() && plan.board != Board::PARPORT) {
         text += fmt::format("[HOSTMOT2]\n"
                             "# The board on the network.{}\n"
                             "BOARD_IP = {}\n\n",
-                            plan.wiring.isSimulated ? " 127.0.0.1: a simulated one on this computer." : "",
+                            plan.wiring.isSimulated ? " 127.0.0.1: a simulated board on this computer." : "",
                             plan.wiring.isSimulated ? "127.0.0.1" : plan.wiring.address);
     }
     const double full_output = plan.wiring.spindle.full_output;
     if (full_output > 0) {
         text += fmt::format("[SPINDLE_0]\n"
-                            "# Speed at full output [rev/min]: what a tachometer measures there.\n"
+                            "# Speed at full output [rev/min], measured with a tachometer.\n"
                             "FULL_OUTPUT = {}\n"
                             "MAX_FORWARD_VELOCITY = {}\n\n",
                             to_text(full_output), short_text(plan.spindle_max));
@@ -124,7 +125,7 @@ std::string angular_text(const Plan &plan) {
         acceleration = std::max(acceleration, axis.isRotary() ? axis.acceleration : 0);
     }
     return speed == 0 ? ""
-                      : fmt::format("# Of rotary axes [deg/s], [deg/s2].\n"
+                      : fmt::format("# Limits of rotary axes [deg/s], [deg/s2].\n"
                                     "DEFAULT_ANGULAR_VELOCITY = {}\n"
                                     "MAX_ANGULAR_VELOCITY = {}\n"
                                     "MAX_ANGULAR_ACCELERATION = {}\n",
@@ -141,7 +142,7 @@ std::string whole_text(const Plan &plan) {
                        "COORDINATES = {}\n"
                        "LINEAR_UNITS = {}\n"
                        "ANGULAR_UNITS = degree\n"
-                       "# Of jogs, to begin with; the highest along a path [{}/s]; acceleration [{}/s2].\n"
+                       "# Default jog speed; maximum speed along a path [{}/s]; acceleration [{}/s2].\n"
                        "DEFAULT_LINEAR_VELOCITY = {}\n"
                        "MAX_LINEAR_VELOCITY = {}\n"
                        "MAX_LINEAR_ACCELERATION = {}\n"
@@ -155,7 +156,7 @@ std::string whole_text(const Plan &plan) {
                        letters(plan, " "), length_unit(plan), length_unit(plan), length_unit(plan),
                        short_text(plan.fastest() / 4), short_text(plan.fastest()), short_text(acceleration),
                        angular_text(plan),
-                       is_gantry ? "# Each motor is a joint; the two of Y move together.\n"
+                       is_gantry ? "# Each motor is a joint; the two motors of Y move together.\n"
                                  : "# Each motor is a joint.\n",
                        letters(plan, ""), is_gantry ? " kinstype=BOTH" : "", plan.joints());
 }
@@ -185,8 +186,9 @@ double latch_speed(const Axis &axis) {
 
 std::string home_text(const Plan &plan, const Axis &axis) {
     const int sequence = home_sequence(plan, axis);
-    const char *const order = sequence < 0 ? "# Order of homing; negative: these motors end together.\n"
-                                           : "# Order of homing; equal ones together.\n";
+    const char *const order = sequence < 0
+                                  ? "# Order of homing; negative: these motors finish homing together.\n"
+                                  : "# Order of homing; joints with equal numbers home together.\n";
     if (plan.switches == Switches::NONE) {
         const std::string place = short_text(std::clamp(0.0, axis.min, axis.max));
         return fmt::format("# No home switch: homing uses the current position of the motor.\n"
@@ -199,25 +201,25 @@ std::string home_text(const Plan &plan, const Axis &axis) {
     }
     const double sign = axis.home_at_max ? 1 : -1, end = axis.home_at_max ? axis.max : axis.min;
     return fmt::format(
-        "# The switch is at HOME_OFFSET; after homing the axis goes to HOME.\n"
+        "# The home switch is at HOME_OFFSET. After homing the axis moves to HOME.\n"
         "HOME = {}\n"
         "HOME_OFFSET = {}\n"
-        "# Towards the switch, and onto it slowly, less than a count a period; the sign is the direction.\n"
+        "# Search speed, and latch speed (less than a count per period); the sign is the direction.\n"
         "HOME_SEARCH_VEL = {}\n"
         "HOME_LATCH_VEL = {}\n"
         "{}{}HOME_SEQUENCE = {}\n",
         short_text(end - sign * plan.small(axis, 1)), short_text(end + sign * plan.small(axis, 2)),
         short_text(sign * axis.home_speed), short_text(sign * latch_speed(axis)),
         plan.switches == Switches::HOME_AND_LIMITS
-            ? "# The switch is a limit, too, but not while it is looked for.\nHOME_IGNORE_LIMITS = YES\n"
+            ? "# The home switch is also a limit switch, except during homing.\nHOME_IGNORE_LIMITS = YES\n"
             : "",
         order, sequence);
 }
 
 std::string stepper_text(const Plan &plan, const Axis &axis, const Motor &motor) {
-    return fmt::format("# Steps of one {} of travel; negative: the motor turns the other way round.\n"
+    return fmt::format("# Steps per {}; negative: the motor is reversed.\n"
                        "STEP_SCALE = {}\n"
-                       "# The generator may catch up with what it lags behind.\n"
+                       "# Limits of the step generator, with a reserve for following the command.\n"
                        "STEPGEN_MAXVEL = {}\n"
                        "STEPGEN_MAXACCEL = {}\n",
                        axis.isRotary() ? "degree" : length_unit(plan), to_text(motor.steps_per_unit),
@@ -226,7 +228,7 @@ std::string stepper_text(const Plan &plan, const Axis &axis, const Motor &motor)
 
 std::string servo_text(const Plan &plan, const Axis &axis, const Motor &motor) {
     const Servo &servo = motor.servo;
-    return fmt::format("# Counts of one {} of travel; negative: the encoder counts the other way round.\n"
+    return fmt::format("# Counts per {}; negative: the encoder is reversed.\n"
                        "ENCODER_SCALE = {}\n"
                        "# Speed at 10 V; negative: the command is reversed.\n"
                        "OUTPUT_SCALE = {}\n"
@@ -254,7 +256,8 @@ std::string joint_text(const Plan &plan, const Axis &axis, const Motor &motor, i
         "MAX_ACCELERATION = {}\n"
         "MIN_LIMIT = {}\n"
         "MAX_LIMIT = {}\n"
-        "# Farther than this from where it should be, the machine stops: at full speed, at standstill.\n"
+        "# Maximum following error at full speed, and at low speed. If it is exceeded, the machine is "
+        "switched off.\n"
         "FERROR = {}\n"
         "MIN_FERROR = {}\n",
         to_upper(motor.name), joint, axis.isRotary() ? "ANGULAR" : "LINEAR", short_text(axis.speed),
@@ -264,7 +267,7 @@ std::string joint_text(const Plan &plan, const Axis &axis, const Motor &motor, i
             : plan.is_servo ? servo_text(plan, axis, motor)
                             : "";
     if (motor.backlash > 0) {
-        text += fmt::format("# Play between motor and table, made up at each change of direction.\n"
+        text += fmt::format("# Backlash between motor and table.\n"
                             "BACKLASH = {}\n",
                             short_text(motor.backlash));
     }
@@ -286,7 +289,7 @@ static const char *machine_text(const Plan &plan) {
 std::string ini_text(const Plan &plan) {
     std::string text =
         fmt::format("# SPDX-License-Identifier: GPL-2.0-or-later\n"
-                    "# {}: {}, {}, {}. Written by `millwright setup`; yours to change.\n"
+                    "# {}: {}, {}, {}. Written by `millwright setup`. You may edit it.\n"
                     "# Lengths are in {}, speeds in {} per second. docs/reference/ini.md has all keys.\n"
                     "[EMC]\n"
                     "VERSION = 1.1\n"
@@ -298,7 +301,7 @@ std::string ini_text(const Plan &plan) {
     int joint = 0;
     for (const Axis &axis : plan.axes) {
         text += fmt::format("[AXIS_{}]\n"
-                            "# Travel, speed and acceleration that programs and jogs keep to.\n"
+                            "# Limits of travel, speed and acceleration for programs and jogs.\n"
                             "MIN_LIMIT = {}\n"
                             "MAX_LIMIT = {}\n"
                             "MAX_VELOCITY = {}\n"

@@ -295,9 +295,10 @@ std::string_view wire_name(const Declaration &declaration) {
 std::string nml_reference_page() {
     std::string page =
         "# NML messages\n"
-        "Generated from the table in `src/clients/nml/message/wire_table.cc`. The last column names the\n"
+        "This page lists the NML messages, for authors of clients. Generated from the table in "
+        "`src/clients/nml/message/wire_table.cc`. The last column names the\n"
         "command or status of the machine, whose fields are in `messages.md`, or the reason why the machine\n"
-        "rejects the message. The machine also sends 11 to 13, on the channel of errors.\n"
+        "rejects the message. The machine also sends messages 11 to 13, on the error channel.\n"
         "\n"
         "| number | name | class | in the machine |\n"
         "|---|---|---|---|\n";

@@ -141,27 +141,30 @@ std::string transitions() {
 
 std::string states_page() {
     std::string text =
-        "# What task takes, and when\n\n"
-        "Generated from the tables in `src/machine/task/run/admission.cc` and "
+        "# Commands and states\n\n"
+        "This page shows which commands task accepts in which state, for authors of clients. Generated from "
+        "the tables in `src/machine/task/run/admission.cc` and "
         "`src/machine/task/run/run_state.cc`.\n\n"
-        "A command is looked up here first: *yes* passes it to its handler, which may still reject it for "
-        "what "
-        "the table does not\nknow (no such spindle, joints that are not homed, a limit); a number is the "
-        "reason of the rejection.\n\n## Situations\n\n| situation | the machine |\n|---|---|\n";
+        "Task first checks each command with this table. *yes*: the command is passed to its handler, which "
+        "may "
+        "reject it for other\nreasons (a spindle that does not exist, joints that are not homed, a limit). A "
+        "number refers to the reason of the rejection.\n\n## Situations\n\n| situation | the machine "
+        "|\n|---|---|\n";
     for (const Named &situation : SITUATIONS) {
         text += fmt::format("| {} | {} |\n", situation.name, situation.doc);
     }
-    text += "\n## Commands\n\n| kind | what it does | commands |\n|---|---|---|\n";
+    text += "\n## Commands\n\n| class | effect | commands |\n|---|---|---|\n";
     const auto names = commands_by_class(std::type_identity<messages::CommandVariant>{});
     for (std::size_t i = 0; i < CLASSES.size(); ++i) {
         text += fmt::format("| {} | {} | {} |\n", CLASSES[i].name, CLASSES[i].doc, names[i]);
     }
     text += "\n## Commands in situations\n\n" + admission();
-    text +=
-        "\n## Phases of a run\n\nRows are events, columns the phase before; - changes nothing, a number is "
-        "the reason why the event cannot be.\n\n" +
-        transitions<RunPhase>();
-    return text + "\n## Pauses of a run\n\nThe same for pauses.\n\n" + transitions<Hold>();
+    text += "\n## Phases of a run\n\nRows are events, columns the phase before the event. `-`: no change. A "
+            "number "
+            "refers to the reason why the event is not possible.\n\n" +
+            transitions<RunPhase>();
+    return text + "\n## Pauses of a run\n\nRows are events, columns the pause before the event.\n\n" +
+           transitions<Hold>();
 }
 
 }  // namespace mw::task
