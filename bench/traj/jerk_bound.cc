@@ -111,7 +111,8 @@ class Pass : protected Laying {
         std::size_t axis = 0;
     };
 
-    /// Adds gradient and curvature of a function whose slope is known; by_q is along one axis.
+    /// Adds gradient and curvature of a function with a known slope. slope.by_q contains derivatives along
+    /// slope.axis.
     void add(const Slope &slope, double gradient, double curvature) {
         std::array<double, STENCIL * MOST_AXES> row;
         const std::size_t width = 1 + sides_;

@@ -193,7 +193,8 @@ class Laying {
         return over;
     }
 
-    /// Squared distances from the programmed path over P squared: of the lengths, of the angles.
+    /// Squared distances from the programmed path divided by P squared: element 0 for lengths, element 1 for
+    /// angles.
     std::array<double, 2> off(const Nodes &n, std::size_t i) const {
         std::array<double, 2> sum{};
         for (std::size_t k = 0; k < axes_; ++k) {

@@ -69,7 +69,8 @@ class StepperAxis {
         const double lag = field_ - rotor_;
         const double stiffness = amplitude * std::cos(lag * per_unit) * per_unit;
         const double damping = 2 * DAMPING * std::sqrt(peak * per_unit);
-        // Implicit: stable for any stiffness. The field bounds its torque, damping included.
+        // The implicit step is stable for any stiffness. The torque, including damping, is limited to the
+        // amplitude.
         const double torque =
             amplitude * std::sin(lag * per_unit) + damping * slip_velocity_ - stiffness * velocity_ * dt;
         const double driving =

@@ -64,8 +64,9 @@ double following_velocity(double error, double velocity, double command_velocity
         const double wanted = command_velocity - 0.5 * error_when_matched / dt;
         return velocity + clamped(wanted - velocity, accel * dt);
     }
-    // Braking relative to the command now ends at error_when_matched. Braking one period later moves that end
-    // by about twice the relative travel of a period. Brake when that would not reduce the error.
+    // If braking relative to the command starts now, it ends with error_when_matched. If it starts one period
+    // later, the end moves by about twice the relative travel of a period. Brakes if the later start would
+    // not reduce the error.
     const double direction = relative > 0.0 ? 1.0 : -1.0;
     const double shortfall = -direction * error_when_matched;
     const bool early = shortfall > 2.0 * std::fabs(relative) * dt;

@@ -316,7 +316,7 @@ TEST_F(RecoveryTest, WhatHasChangedSinceIsNoticed) {
     disk.write_outside(folder / "p.ngc", "G0 X1\nM2\n");
     ASSERT_EQ(rig->come_up({}), "");
     EXPECT_FALSE(offer().isOffered);
-    EXPECT_EQ(offer().refusal.str(), "its file has been changed since");
+    EXPECT_EQ(offer().refusal.str(), "its file has changed since the program was started");
 
     run_to(SQUARE, 9);
     cut_power();

@@ -41,7 +41,7 @@ std::string why_not(Disk &disk, const Start &start) {
     if (!content.has_value()) {
         return content.error().message;
     }
-    return mark_of(*content) == start.file ? "" : "its file has been changed since";
+    return mark_of(*content) == start.file ? "" : "its file has changed since the program was started";
 }
 
 }  // namespace

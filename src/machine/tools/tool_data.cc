@@ -27,7 +27,7 @@ void ToolData::keep_life(const std::string &path, journal::Writer &keeper, diagn
         const auto read =
             text.has_value() ? tools::LifeBook::parse(*text, path) : std::unexpected(text.error());
         if (!read.has_value()) {
-            sink.warning(read.error().message + ": the life of tools is not kept", read.error().place);
+            sink.warning(read.error().message + ": tool life is not saved", read.error().place);
             return;
         }
         life_ = *read;

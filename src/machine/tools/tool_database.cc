@@ -91,7 +91,7 @@ void ToolDatabase::wait() {
 }
 
 void ToolDatabase::give_up(const std::string &why) {
-    trouble_ = fmt::format("the tool database {}; changes of tools are not kept", why);
+    trouble_ = fmt::format("the tool database {}; changes of tool data are not saved", why);
     const bool reading = !read_.has_value();
     if (reading) {
         read_ = fail(trouble_);

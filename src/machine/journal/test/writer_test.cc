@@ -54,7 +54,7 @@ TEST_F(JournalWriter, ARunThatHasNotEndedIsFound) {
     EXPECT_EQ(writer->found().run->start.state, "state");
     EXPECT_EQ(writer->found().refusal, "");
     disk.write_outside(PROGRAM, "G0 X2\n");
-    EXPECT_EQ(open()->found().refusal, "its file has been changed since");
+    EXPECT_EQ(open()->found().refusal, "its file has changed since the program was started");
     disk.names.erase(PROGRAM);
     EXPECT_EQ(open()->found().refusal, "its file no longer exists");
 }

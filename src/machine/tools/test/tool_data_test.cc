@@ -382,7 +382,7 @@ TEST_F(ToolDataTest, TheLifeOfToolsIsKeptBesideTheirTable) {
     tools_.reset();
     write("tool.tbl.life", "broken\n");
     open();
-    EXPECT_NE(told().find("the life of tools is not kept"), std::string::npos);
+    EXPECT_NE(told().find("tool life is not saved"), std::string::npos);
     tools_->note_cut(5, {100, 1});
     tools_.reset();
     keeper_.work();

@@ -451,7 +451,7 @@ export const en = {
   'first.last': 'last started',
   'first.start': 'Start',
   'first.none': 'No machine matches.',
-  'first.starts': '{ini} starts',
+  'first.starts': 'Starting {ini}',
   'first.own_display': 'Its display opens in its own window.',
   'first.screen_at': 'Its screen, at port {port}',
   'first.wait': 'Its screen replaces this page.',
