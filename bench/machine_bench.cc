@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How much faster than the clock a whole three-axis machine runs in virtual time (1 ms servo, no trace, one
+// Speed of a whole three-axis machine in virtual time, as a multiple of real time (1 ms servo, no trace, one
 // core).
 #include <cstdio>
 #include <cstdlib>

@@ -140,7 +140,7 @@ def ours(folder, letters, cycles):
 
 
 def reference(folder, letters, cycles):
-    """LinuxCNC's realtime program is started by its full name: in a separate name space callgrind replaces it."""
+    """LinuxCNC's realtime program is started with its full path; callgrind replaces it in a separate mount namespace."""
     prepare(folder, letters, 60.0 + 20 * cycles * PERIOD_NS * 1e-9)
     homed = compare_traj.DRIVER.replace("homed[:5]", f"homed[:{len(letters)}]").split("with open")[0]
     look = LOOK.replace("LOOK_S", f"{3 * cycles * PERIOD_NS * 1e-9:.3f}")

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // shop-load PORT MACHINES VALUES SECONDS JOB_S: edge nodes of Sparkplug for the load test of a shop, over one
-// connection. Each machine sends ten messages a second with VALUES values a second in all, and runs a program
-// for half of each JOB_S seconds; with each tenth program it has an alarm. Prints what it has sent, and the
-// time from a message to the receipt that covers it.
+// connection. Each machine sends ten messages per second with VALUES values per second in total, and runs a
+// program for half of each JOB_S seconds; every tenth program has an alarm. Prints the sent data, and the
+// time from a message to its receipt.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -112,7 +112,7 @@ class Load {
     }
 
   private:
-    /// The begin and the end of a program. The machines do not begin at the same time.
+    /// Start and end of a program. The machines start at different times.
     void add_job(int now, int number, TimeMs at, Payload &payload) {
         const int tick = now + number;
         if (job_ticks_ == 0 || tick % (job_ticks_ / 2) != 0) {
@@ -217,7 +217,7 @@ int main(int count, char **words) {
     while (!load.isOnline()) {
         load.wait();
     }
-    // The machines are spread over the period.
+    // The machines are distributed over the period.
     constexpr int PARTS = 20;
     const auto begin = Clock::now();
     const auto part = std::chrono::duration<double>(1.0 / MESSAGES_PER_S / PARTS);

@@ -19,7 +19,8 @@ class Banded {
     /// Element (i, i - below) of the lower half.
     double &at(std::size_t i, std::size_t below) { return rows_[i * (band_ + 1) + below]; }
 
-    /// Cholesky's factors in place of the matrix; a diagonal that is lost to rounding becomes `least`.
+    /// Replaces the matrix by its Cholesky factors. A diagonal element that is lost to rounding becomes
+    /// `least`.
     void factor(double least) {
         for (std::size_t i = 0; i < size_; ++i) {
             const std::size_t reach = std::min(i, band_);

@@ -10,7 +10,8 @@ namespace mw::bench {
 
 namespace {
 
-/// Each point moves to the middle of its neighbours, `count` times, never farther than P from where it was.
+/// Moves each point to the weighted mean of itself and its neighbours, `count` times, at most P from its
+/// original position.
 void smooth(const std::vector<Pose> &original, const Path &path, double tolerance, int count,
             std::vector<Pose> &p) {
     for (int n = 0; n < count; ++n) {
@@ -30,10 +31,11 @@ void smooth(const std::vector<Pose> &original, const Path &path, double toleranc
     }
 }
 
-/// Allowed accelerations along the path at the squared speed b: low <= a <= high; false when there are none.
+/// First and second derivatives of the coordinates along the path at a point.
 struct Cell {
     Pose q1, q2;
 };
+/// Allowed accelerations along the path at the squared speed b: low <= a <= high. False if there are none.
 bool range_of(const Cell &c, const Program &program, double b, double &low, double &high) {
     low = -1e300;
     high = 1e300;
@@ -74,7 +76,7 @@ double time_of(const std::vector<Pose> &p, const Path &path, const Program &prog
         most[i] = path.isStop[i] ? 0.0 : v * v;
     }
     for (std::size_t i = n - 1; i-- > 1;) {
-        // The maximum b from which an allowed a reaches the feasible range of the next point.
+        // The maximum b at which an allowed acceleration reaches the feasible range of the next point.
         double low_b = 0;
         double high_b = most[i];
         for (int k = 0; k < 50 && high_b > 0; ++k) {

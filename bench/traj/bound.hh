@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How fast a program could be driven within its limits and P, by numbers and without src/trajectory. Not a
-// proof of the best: the best of a family of smoothed paths, each with the time-optimal profile on a fine
-// grid.
+// Calculates numerically, without src/trajectory, how fast a program can run within its limits and P. This is
+// not a proven optimum: it is the best of a family of smoothed paths, each with the time-optimal profile on a
+// fine grid.
 #pragma once
 
 #include "traj/kinds.hh"

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Nodes p_i lie along the path, about evenly in time. The unknown b_i = (du/dt)^2 is how much faster than
-// one node per period the path passes point i. Then
-//   a_i = (p_{i+1} - 2 p_i + p_{i-1}) b_i + (p_{i+1} - p_{i-1}) (b_{i+1} - b_{i-1})/8,
-//   j_{i+1/2} = sqrt(b_{i+1/2}) (a_{i+1} - a_i):
-// at b = 1 just what a checker of samples computes. An interior-point method minimizes the sum of 1/sqrt(b),
-// first with p fixed, then with p free across the path within P. After each pass the nodes are distributed
-// again, evenly in the resulting time.
+// Nodes p_i are placed along the path, approximately at equal time intervals. The unknown b_i = (du/dt)^2 is
+// the squared
+// speed at node i, in nodes per period. Then
+// a_i = (p_{i+1} - 2 p_i + p_{i-1}) b_i + (p_{i+1} - p_{i-1}) (b_{i+1} - b_{i-1})/8,
+// j_{i+1/2} = sqrt(b_{i+1/2}) (a_{i+1} - a_i):
+// at b = 1 these are the values that a checker of samples calculates. An interior-point method minimizes the
+// sum of 1/sqrt(b),
+// first with fixed p, then with p free across the path within P. After each pass the nodes are redistributed
+// at equal intervals of the resulting time.
 #include "traj/jerk_bound.hh"
 
 #include <algorithm>
@@ -19,14 +21,15 @@ namespace mw::bench {
 
 namespace {
 
-constexpr std::size_t STENCIL = 4;  ///< nodes that a jerk depends on
+constexpr std::size_t STENCIL = 4;  ///< number of nodes on which a jerk depends
 constexpr int STEPS = 15;
 constexpr double LEAST_MU = 4e-5, TIE = 10.0, TIES = 0.02, STIFF = 1e-7;
 
-/// A product kept in range; its logarithm is the sum of those of its factors.
+/// A product that stays within the range of double; its logarithm is the sum of the logarithms of its
+/// factors.
 class Slacks {
   public:
-    /// False when it is not inside.
+    /// Returns false if x is outside.
     bool take(double x) {
         product_ *= x;
         if (product_ < 1e-200 || product_ > 1e200) {
@@ -104,7 +107,7 @@ class Pass : protected Laying {
         return sum - mu * slacks.log();
     }
 
-    /// A linear function of the unknowns of a few nodes in a row.
+    /// A linear function of the unknowns of a few consecutive nodes.
     struct Slope {
         std::size_t first = 0, nodes = 0;
         std::array<double, STENCIL> by_b{}, by_q{};
@@ -134,7 +137,7 @@ class Pass : protected Laying {
         }
     }
 
-    /// -mu log(1 - x^2) for x with this slope.
+    /// Adds -mu log(1 - x^2) for x with this slope.
     void add_barrier(const Slope &slope, double x, double mu) {
         const double up = 1.0 / (1.0 - x);
         const double down = 1.0 / (1.0 + x);
@@ -230,13 +233,13 @@ class Pass : protected Laying {
         way = std::sqrt(way);
         const double root = std::sqrt(0.5 * (n_.b[i] + n_.b[i - 1]));
         const double room = 1.0 - way * root * feed_[i];
-        // Across the path nothing changes the way at first order.
+        // A move across the path does not change the distance to first order.
         const double by_b = way * feed_[i] * 0.25 / root;
         add({i - 1, 2, {by_b, by_b}, {}, 0}, mu / room, mu / square(room));
     }
 
-    /// One step of Newton's method (Gauss's part of it, damped as needed); false when nothing is to be
-    /// gained.
+    /// One step of Newton's method (the Gauss-Newton part, damped if necessary). False if it gives no
+    /// improvement.
     bool advance(double mu, double trust) {
         const std::size_t width = 1 + sides_;
         gradient_.assign(count() * width, 0.0);
@@ -308,9 +311,9 @@ class Pass : protected Laying {
         return 0;
     }
 
-    /// False when no speed is feasible at the nodes.
+    /// False if no speed is feasible at the nodes.
     bool solve(double mu, double trust) {
-        // From inside: slower until every slack is there.
+        // Starts from a feasible point: reduces the speed until every slack is positive.
         double slower = 1;
         while (merit(n_, mu, trust) > 1e299 && slower < 50) {
             slower *= 1.02;
@@ -326,7 +329,7 @@ class Pass : protected Laying {
     std::vector<double> gradient_;
     Banded hessian_;
     double damping_ = 0, gain_ = 0;
-    double tie_ = 0;  ///< weight of the difference of neighbours' b, which keeps ends regular
+    double tie_ = 0;  ///< weight of the difference of b between neighbours, which stabilizes the ends
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How fast a program could be driven with limits of velocity, acceleration and jerk within P, by numbers and
-// without src/trajectory: smooth curves inside the tolerance, and on each a time-optimal pass by an
+// Calculates numerically, without src/trajectory, how fast a program can run with limits of velocity,
+// acceleration and jerk within P: smooth curves inside the tolerance, each with a time-optimal pass by an
 // interior-point method. The result is a trajectory that can be checked.
 #pragma once
 
@@ -16,24 +16,26 @@ struct Trajectory {
     double time_s = 1e300;
 };
 
-/// The best trajectory found; its samples, `period_s` apart, keep all limits by their differences.
+/// The best trajectory found. Its samples have the interval `period_s`; their differences are within all
+/// limits.
 Trajectory best_known_trajectory(const Program &program);
 
 // --- parts, for tests
 
-/// Points evenly spaced along one stretch between stops.
+/// Evenly spaced points between two stops.
 struct Stretch {
     std::vector<Pose> points;
-    std::vector<Pose> programmed;  ///< where each point was before it was smoothed
-    std::vector<double> feed;      ///< [1/s] along the path, 0: none
+    std::vector<Pose> programmed;  ///< position of each point before smoothing
+    std::vector<double> feed;      ///< [1/s] along the path, 0: no limit
     double step = 0;
-    bool isExact = false;  ///< every point is to be met
+    bool isExact = false;  ///< the path must pass every point exactly
 };
 
-/// The path cut at its stops and smoothed by kernels as wide as P and `widest` [points] allow.
+/// Divides the path at its stops and smooths it with kernels as wide as P and `widest` [points] permit.
 std::vector<Stretch> smooth_stretches(const Path &path, double tolerance, double widest);
 
-/// Time-optimal samples along the stretches, with stops between them; `isFree`: within P they may leave them.
+/// Time-optimal samples along the stretches, with stops between them. `isFree`: they may leave the stretches
+/// within P.
 Trajectory time_optimal(const std::vector<Stretch> &stretches, const Program &program, bool isFree);
 
 }  // namespace mw::bench

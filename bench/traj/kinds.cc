@@ -14,7 +14,7 @@ constexpr double PI = std::numbers::pi;
 constexpr double FEED = 200;  ///< mm/s, as the axes' own limit
 constexpr double ROTARY_SPEED = 120, ROTARY_ACCELERATION = 800, ROTARY_JERK = 40000;
 
-/// Figures as a post-processor prints them.
+/// Rounds numbers like a post-processor.
 double rounded(double x) {
     return std::round(x * 1e4) * 1e-4;
 }
@@ -50,7 +50,7 @@ class Writer {
         m.end = p;
         push(m);
     }
-    /// About the centre (cx, cy) by `angle`, rising by `dz`.
+    /// An arc about (cx, cy) by `angle`, with a rise of `dz`.
     void arc(double cx, double cy, double angle, double dz = 0) {
         Move m;
         m.isArc = true;
@@ -159,7 +159,7 @@ Program surface_raster() {
         const double sign = row % 2 == 0 ? 1 : -1;
         w.to(x, y, height(x, y));
         while (sign > 0 ? x < 50 : x > 0) {
-            // Chords that stay within a micrometre of the surface, as a CAM system places them.
+            // Chords within a micrometre of the surface, as a CAM system creates them.
             const double h = 0.05;
             const double bend = std::abs(height(x + h, y) - 2 * height(x, y) + height(x - h, y)) / (h * h);
             x += sign * std::clamp(std::sqrt(8 * 0.001 / std::max(bend, 1e-3)), 0.05, 1.0);
@@ -211,7 +211,7 @@ Program engraving() {
             const Pose back = w.at();
             w.to(x + 2 * unit(), 3 * unit());
             if (stroke % 2 == 0) {
-                w.to(back[0], back[1]);  // there and back on the same line
+                w.to(back[0], back[1]);  // out and back on the same line
             }
         }
         for (int i = 1; i <= 12; ++i) {
@@ -332,7 +332,7 @@ Pose position_on(const Pose &from, const Move &move, double part) {
     if (!move.isArc) {
         return p;
     }
-    // Bench arcs lie in planes parallel to X Y.
+    // Arcs in these programs are in planes parallel to XY.
     const double a = move.angle_rad * part * (move.normal[2] < 0 ? -1 : 1);
     const double x = from[0] - move.centre[0];
     const double y = from[1] - move.centre[1];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs that trajectory planners are measured with: twelve kinds of machining, as plain moves. Uses
-// nothing of src/trajectory, so that bounds and other planners can be measured on the same ground. See
-// README.md.
+// Programs for comparing trajectory planners: twelve types of machining as plain moves. Independent of
+// src/trajectory, so that bounds and other planners can be measured with the same programs. See README.md.
 #pragma once
 
 #include <string>
@@ -14,13 +13,14 @@ namespace mw::bench {
 
 using geometry::Pose;
 
-/// One programmed move: a line, or an arc about `centre` in the plane of `normal` (helical by what remains).
+/// One programmed move: a line, or an arc about `centre` in the plane of `normal` (a helix if the end is
+/// outside that plane).
 struct Move {
     Pose end;
     bool isArc = false;
     Pose centre, normal;
     double angle_rad = 0;  ///< signed about `normal`
-    double feed = 0;       ///< along X Y Z, or A B C when these alone move [mm/s, deg/s]; 0: rapid
+    double feed = 0;       ///< along X Y Z, or A B C if only these move [mm/s, deg/s]; 0: rapid
     geometry::PathMode control = geometry::PathMode::BLEND;
 };
 
@@ -33,14 +33,15 @@ struct Program {
     Pose max_velocity, max_acceleration, max_jerk;
 };
 
-/// All kinds, always the same moves.
+/// All types, always with the same moves.
 std::vector<Program> all_kinds();
 
 /// Dense blocks for measuring the planning rate: 0.01 mm apart at F20000 along a smooth curve in nine
 /// coordinates.
 Program dense_nine_axes(int blocks);
 
-/// The programmed path as points no farther than `step` apart, first the start; arcs by their own formula.
+/// The programmed path as points at most `step` apart, including the start. Arcs are calculated
+/// independently.
 std::vector<Pose> sample_path(const Program &program, double step);
 
 /// Position at `part` in [0, 1] of a move that starts at `from`.

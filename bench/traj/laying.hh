@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Nodes along a path at equal time intervals, and their redistribution when the timing has changed.
+// Nodes along a path at equal time intervals, and their redistribution after a change of the timing.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 namespace mw::bench {
 
 inline constexpr int MOST_AXES = 9;
-inline constexpr std::size_t PAD = 8;  ///< nodes at each end where nothing moves
-inline constexpr double REACH = 3;     ///< nodes that a blended value depends on, each way
+inline constexpr std::size_t PAD = 8;  ///< number of nodes without motion at each end
+inline constexpr double REACH = 3;     ///< nodes on each side on which a blended value depends
 inline constexpr double ROOM = 1.0 - 2e-7;
 inline constexpr double TUBE = 0.95,
-                        MOST = 1.02;  ///< used part of P, and the increase caused by redistribution
+                        MOST = 1.02;  ///< used fraction of P, and its increase by redistribution
 inline constexpr double PERIOD = 1e-3, FINE_PERIOD = 0.25e-3;
 
 using Row = std::array<double, MOST_AXES>;
@@ -26,7 +26,7 @@ inline double square(double x) {
 
 /// Nodes and their b.
 struct Nodes {
-    std::vector<double> s;  ///< the place on the track that each node answers to
+    std::vector<double> s;  ///< position of each node on the track
     std::vector<Row> q;     ///< the coordinates that move
     std::vector<double> b;
 };
@@ -49,7 +49,7 @@ class Laying {
   protected:
     std::size_t count() const { return n_.s.size(); }
 
-    /// Each stretch from stop to stop with a slow, very smooth start and end.
+    /// Each stretch between stops gets a slow start and end with very smooth timing.
     void lay_slowly() {
         n_.s.assign(PAD, 0.0);
         const std::vector<double> &starts = track_.starts();
@@ -76,7 +76,7 @@ class Laying {
         lay(n_, false);
     }
 
-    /// Takes nodes that are even in time; their coordinates are those of the track unless they are free.
+    /// Uses nodes at equal time intervals. Their coordinates are those of the track unless they are free.
     void lay(Nodes nodes, bool isFree) {
         n_ = std::move(nodes);
         period_ = laid_period_;
@@ -119,7 +119,7 @@ class Laying {
         }
     }
 
-    /// Directions across the path, in which nodes may move.
+    /// Directions across the path in which nodes may move.
     void find_sides() {
         side_.assign(count(), {});
         for (std::size_t i = 1; i + 1 < count(); ++i) {
@@ -136,7 +136,7 @@ class Laying {
             for (std::size_t k = 0; k < axes_; ++k) {
                 base[0][k] /= std::sqrt(size);
             }
-            std::size_t skip = 0;  // the axis that is most along the path
+            std::size_t skip = 0;  // axis with the largest component along the path
             for (std::size_t k = 1; k < axes_; ++k) {
                 skip = std::abs(tangent[k]) > std::abs(tangent[skip]) ? k : skip;
             }
@@ -168,7 +168,7 @@ class Laying {
         }
     }
 
-    /// Nothing moves there: b is as at the next place.
+    /// Nothing moves there: b is that of the next node.
     bool isPad(std::size_t i) const { return i < PAD || i + PAD >= count(); }
 
     double acceleration(const Nodes &n, std::size_t i, std::size_t k) const {
@@ -176,7 +176,7 @@ class Laying {
                0.125 * (n.q[i + 1][k] - n.q[i - 1][k]) * (n.b[i + 1] - n.b[i - 1]);
     }
 
-    /// Factor by which time must be stretched so that every limit is kept with b = 1.
+    /// Factor by which the time must be stretched to be within every limit with b = 1.
     double worst() const {
         double over = 0;
         for (std::size_t i = 2; i + 2 < count(); ++i) {
@@ -204,7 +204,7 @@ class Laying {
         return {sum[0] / p2, sum[1] / p2};
     }
 
-    /// Nodes about `period` apart in the time that b means.
+    /// Nodes at intervals of about `period` in the time defined by b.
     Nodes even(double period) {
         const std::size_t n = count();
         std::vector<double> t(n, 0.0);
@@ -250,7 +250,8 @@ class Laying {
         return out;
     }
 
-    /// Quintic B-spline with values as control points: its differences are means of theirs.
+    /// Quintic B-spline with these values as control points; its differences are averages of their
+    /// differences.
     template <class Value>
     static double blended(std::size_t n, double u, const Value &value) {
         const auto i = static_cast<long>(std::floor(u));
@@ -262,7 +263,7 @@ class Laying {
         return sum;
     }
 
-    /// The nodes as samples, so far apart that every limit is kept.
+    /// The nodes as samples, at an interval for which every limit is kept.
     Trajectory sampled() {
         const Nodes keep = n_;
         const double period = period_;
@@ -290,9 +291,9 @@ class Laying {
     std::size_t axes_ = 0, sides_ = 0;
     Nodes n_;
     std::vector<Row> programmed_;
-    std::vector<double> feed_;  ///< reciprocal of the way in one period, 0: any
+    std::vector<double> feed_;  ///< reciprocal of the distance per period, 0: no limit
     std::vector<char> isExact_;
-    std::vector<double> tube_;  ///< squared distance that is allowed, over that of TUBE
+    std::vector<double> tube_;  ///< permitted squared distance, divided by that of TUBE
     std::vector<std::array<Row, MOST_AXES - 1>> side_;
     Row v_scale_{}, a_scale_{}, j_scale_{};
     double period_ = PERIOD, laid_period_ = PERIOD, time_s_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Smooth curves within P of the programmed path: each point becomes a weighted mean of its surroundings,
-// whose width is the largest that keeps P there and changes slowly from point to point.
+// Smooth curves within P of the programmed path. Each point becomes a weighted average of its neighbourhood.
+// Its width is the largest that stays within P and changes slowly from point to point.
 #include <algorithm>
 #include <cmath>
 
@@ -12,10 +12,10 @@ namespace {
 
 constexpr double USED_TOLERANCE = 0.97;
 constexpr double NARROWER = 0.85;
-constexpr double SLOPE = 0.3;  ///< change of the width from one point to the next
+constexpr double SLOPE = 0.3;  ///< maximum change of the width from one point to the next
 constexpr int ROUNDS = 60;
 
-/// (1 - x^2)^4: three derivatives vanish at its ends.
+/// (1 - x^2)^4: its first three derivatives are zero at the ends.
 double kernel(double x) {
     const double y = 1.0 - x * x;
     return y > 0 ? y * y * y * y : 0.0;
@@ -79,7 +79,7 @@ std::vector<Pose> smoothed(const Path &path, double tolerance, double widest) {
     return out;
 }
 
-/// Lagrange's cubic through the points about [k, k + 1].
+/// Lagrange's cubic through the points around [k, k + 1].
 Pose cubic(const std::vector<Pose> &p, const std::vector<double> &along, std::size_t k, double s) {
     const std::size_t first = std::min(k > 0 ? k - 1 : 0, p.size() > 4 ? p.size() - 4 : 0);
     const std::size_t count = std::min<std::size_t>(4, p.size());
@@ -94,7 +94,7 @@ Pose cubic(const std::vector<Pose> &p, const std::vector<double> &along, std::si
     return sum;
 }
 
-/// Points evenly spaced along a chain.
+/// Evenly spaced points along a polyline.
 Stretch evenly(const std::vector<Pose> &points, const std::vector<Pose> &programmed,
                const std::vector<double> &feed, double step) {
     std::vector<double> along{0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A path by its length, smooth between its stops.
+// A path as a function of its length, smooth between stops.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline double quintic_weight(double x) {
     return (fifth(3.0 - x) - 6.0 * fifth(2.0 - x) + 15.0 * fifth(1.0 - x)) / 120.0;
 }
 
-/// The whole path by its length: stretches one after the other.
+/// The whole path as a function of its length: consecutive stretches.
 class Track {
   public:
     explicit Track(const std::vector<Stretch> &stretches) : stretches_(stretches), starts_{0} {

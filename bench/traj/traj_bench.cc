@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Drives each kind of program with the planner in virtual time: cycle time, limits, deviation, planning rate.
+// Runs each type of program with the planner in virtual time: cycle time, limits, deviation, planning rate.
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -34,7 +34,7 @@ struct Options {
     bool third_order = false;
     bool second_order = false;
     std::string trace, only;
-    double jerk_share = 1;  ///< of the jerk limits of all kinds
+    double jerk_share = 1;  ///< fraction of the jerk limits of all programs
 
     options::CommandLine line() {
         options::CommandLine line("traj_bench [options]",
@@ -137,7 +137,7 @@ profile::CurveLimits curve_limits_of(const Program &program, bool isJerkLimited)
 
 constexpr double WIDEST = 3.0;
 
-/// A curve, its limits, and the places of its stops.
+/// A curve, its limits, and the positions of its stops.
 struct Laid {
     std::vector<curve::Span> spans;
     std::vector<profile::FeedLimit> feeds;
@@ -168,7 +168,7 @@ Laid lay_blend(const Program &program) {
     return out;
 }
 
-/// The programmed path, with stops where its tangent jumps, or at the end of each move.
+/// The programmed path with stops at tangent discontinuities, or at the end of each move.
 Laid lay_exact(const Program &program, bool isJerkLimited) {
     Laid out;
     curve::ExactBuilder builder(WIDEST);
@@ -214,7 +214,7 @@ bool drive_run(profile::PathTiming &profile, const profile::Run &run, double fro
     return is_done;
 }
 
-/// The time of fitting and planning counts.
+/// Includes the time of fitting and planning.
 Run drive_curve(const Program &program, profile::PathTiming &profile, bool isJerkLimited) {
     Run out;
     const auto begin = std::chrono::steady_clock::now();
@@ -250,7 +250,7 @@ Run drive_curve(const Program &program, profile::PathTiming &profile, bool isJer
     return out;
 }
 
-/// Seconds from the first to the last sample that moves.
+/// Time [s] from the first to the last sample with motion.
 double cycle_time(const std::vector<Pose> &samples) {
     std::size_t first = 0;
     while (first + 1 < samples.size() && samples[first + 1] == samples[0]) {
@@ -290,7 +290,8 @@ std::vector<testing::AxisLimit> axis_limits(const Program &program, bool isJerkL
     return limits;
 }
 
-/// Ours over the best known. Of the second code's trajectory, limits and deviation are checked like ours.
+/// Time divided by the best known time. Limits and deviation of the comparison trajectory are checked in the
+/// same way.
 void print_bound(const Options &options, const Program &program, double time_s) {
     if (!options.isJerkLimited) {
         const double best = best_known_time(program);

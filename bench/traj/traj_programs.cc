@@ -18,7 +18,7 @@ std::string file_stem(const Program &program) {
     return stem;
 }
 
-/// Words of the coordinates that differ.
+/// Writes the words of coordinates that differ.
 void write_words(std::FILE *file, const Pose &from, const Pose &to) {
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
         if (from[i] != to[i]) {
@@ -47,7 +47,7 @@ void write_move(std::FILE *file, const Pose &from, const Move &m) {
     std::fputc('\n', file);
 }
 
-/// To the start by a rapid, a rest, then the moves.
+/// Writes a rapid to the start, a dwell, then the moves.
 bool write_gcode(const Program &program, const std::string &path) {
     std::FILE *file = std::fopen(path.c_str(), "w");
     if (file == nullptr) {

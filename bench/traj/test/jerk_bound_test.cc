@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The second code that trajectories are compared with must itself be right: closed forms, limits, tolerance.
+// The comparison trajectories must be correct themselves: tests closed forms, limits, tolerance.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Program program_to(std::initializer_list<Pose> ends) {
     return p;
 }
 
-/// From stop to stop over `length` with limits V, A, J.
+/// Time from stop to stop over `length` with limits V, A, J.
 double s_curve_time(double length) {
     const double tau = A / J;
     if (length >= V * V / A + V * tau) {
@@ -50,7 +50,7 @@ Pose at(double x, double y) {
 TEST(JerkBound, LineIsTheClosedForm) {
     for (const double length : {0.05, 1.0, 20.0, 100.0}) {
         const Trajectory t = best_known_trajectory(program_to({at(length, 0)}));
-        // Samples see only means of jerk over one period, so they may be faster by about that.
+        // Samples contain averages of jerk over a period, so they may be faster by about that.
         EXPECT_NEAR(t.time_s, s_curve_time(length), 1.5e-3) << length;
     }
 }
