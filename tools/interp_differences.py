@@ -47,7 +47,7 @@ def isSame(a, b):
 
 
 def speed_override_at_end(pair):
-    """M2 and M30 enable the speed overrides that M49 or M51 P0 had disabled, as the manual says."""
+    """M2 and M30 enable the speed overrides that M49 or M51 P0 had disabled, as the manual states."""
     if 'PROGRAM_END()' not in pair.ours:
         return
     end = pair.ours.index('PROGRAM_END()')
@@ -57,7 +57,7 @@ def speed_override_at_end(pair):
 
 
 def order_under_compensation(pair):
-    """Under compensation LinuxCNC gives messages and switches before the moves that it holds back."""
+    """Under compensation LinuxCNC makes message and switch calls before the moves that it delays."""
     def sorted_blocks(calls):
         out, moves, others, isOn = [], [], [], False
         for call in calls:
@@ -77,8 +77,8 @@ def order_under_compensation(pair):
 
 
 def context_announced(pair):
-    """M72 and the end of M73 announce feed, speeds and path mode, as the conformance cases have it; LinuxCNC restores
-    the feed with one decimal and the speeds without any."""
+    """M72 and the end of M73 make calls for feed, speeds and path mode, as in the conformance cases; LinuxCNC restores the feed
+    with one decimal and the speeds without decimals."""
     if not pair.has(r'm7[23]'):
         return
     kinds = re.compile(r'(SET_FEED_RATE|SET_SPINDLE_SPEED\(\d+|SET_MOTION_CONTROL_MODE|SET_NAIVECAM_TOLERANCE)')
@@ -111,7 +111,7 @@ def context_announced(pair):
 
 
 def threading_enables_override(pair):
-    """After M49 or M50 P0 each pass of G76 switches the feed override on in LinuxCNC; here it stays off."""
+    """After M49 or M50 P0 each pass of G76 switches the feed override on in LinuxCNC; here it remains off."""
     out = []
     for i, call in enumerate(pair.reference):
         isPass = call == 'ENABLE_FEED_OVERRIDE()' and i > 1 and pair.reference[i - 2] == 'STOP_SPEED_FEED_SYNCH()' and \
@@ -129,7 +129,7 @@ def threading_enables_override(pair):
 
 
 def lathe_pieces(pair):
-    """G70 to G72: moves without length that G71.1 makes, and arcs in two pieces, each way."""
+    """G70 to G72: moves without length that LinuxCNC's G71.1 makes, and arcs that only one side divides into two pieces."""
     if not LATHE_CYCLE.search(pair.program):
         return
 
@@ -149,7 +149,7 @@ def lathe_pieces(pair):
 
 
 def way_out_of_finishing(pair):
-    """Between the passes of G70 ours leaves the profile's end across, at feed; LinuxCNC goes straight back."""
+    """Between the passes of G70 ours leaves the end of the profile at feed across it; LinuxCNC moves straight back."""
     if not re.search(r'\bg70\s*q[^\n]*p[2-9]', pair.program, re.I):
         return
     for i in range(len(pair.ours) - 1):
@@ -161,7 +161,7 @@ def way_out_of_finishing(pair):
 
 
 def narrow_layers(pair):
-    """G71 and G72: LinuxCNC pulls away from a layer of next to no width with rapids of no use."""
+    """G71 and G72: LinuxCNC retracts from a layer of almost no width with unnecessary rapids."""
     if not LATHE_CYCLE.search(pair.program):
         return
     calls, out, i = pair.reference, [], 0
@@ -195,7 +195,7 @@ def name_of(one):
 
 
 def peck_at_the_bottom(pair):
-    """G73 and G83 whose last peck ends at the bottom: rounding makes LinuxCNC repeat the last peck."""
+    """G73 and G83 whose last peck ends at the bottom: due to rounding LinuxCNC repeats the last peck."""
     if not pair.has(r'g[78]3'):
         return
     out = []
@@ -209,19 +209,19 @@ def peck_at_the_bottom(pair):
 
 
 def long_numbers(pair):
-    """In comments LinuxCNC writes ###### for numbers of 30 characters and more."""
+    """In comments LinuxCNC prints ###### for numbers of 30 or more characters."""
     pair.ours = [re.sub(r'-?[\d.]{30,}', '######', call) if call.startswith('MESSAGE(') or '(' not in call else call
                  for call in pair.ours]
 
 
 def small_numbers(pair):
-    """In comments LinuxCNC writes numbers below 0.0001 as 0."""
+    """In comments LinuxCNC prints numbers below 0.0001 as 0."""
     pair.ours = [re.sub(r'(?<![\d.])-?0\.0000\d+', lambda m: '0.' + '0' * (len(m[0].split('.')[1])), call)
                  if call.startswith('MESSAGE(') or '(' not in call else call for call in pair.ours]
 
 
 def angles_of_home(pair):
-    """G28 and G30 do not take the angles of the tool offset off the stored place in LinuxCNC, though its lengths."""
+    """G28 and G30: LinuxCNC subtracts only the lengths of the tool offset from the stored position, not its angles."""
     if not pair.has(r'g(28|30)\b'):
         return
     offset = [0.0, 0.0, 0.0]
@@ -237,15 +237,15 @@ def angles_of_home(pair):
 
 
 def orientation_of_back_boring(pair):
-    """G87 with a spindle that turns counterclockwise: LinuxCNC orients with a mode that M19 does not have."""
+    """G87 with a counterclockwise spindle: LinuxCNC orients with a mode that M19 does not have."""
     if pair.has('g87'):
         pair.reference = [re.sub(r'^ORIENT_SPINDLE\((\d), 0\.0000, 3\)$', r'ORIENT_SPINDLE(\1, 0.0000, 2)', call)
                           for call in pair.reference]
 
 
 def isAroundCorner(start, middle, end):
-    """Whether the points between start and end are corners of a polygon around the circle through both, whose first
-    and last side touch it there."""
+    """True if the points between start and end are corners of a polygon around the circle through both, whose first and last
+    sides are tangents there."""
     (x1, y1), (x2, y2), (dx, dy) = start, end, (middle[0][0] - start[0], middle[0][1] - start[1])
     across = dx * (y2 - y1) - dy * (x2 - x1)
     chord = (x2 - x1)**2 + (y2 - y1)**2
@@ -264,7 +264,7 @@ def isAroundCorner(start, middle, end):
 
 
 def rapid_corners(pair):
-    """G0 around a convex corner under compensation: LinuxCNC's rapid is a chord, ours goes around the tool's circle."""
+    """G0 around a convex corner under compensation: LinuxCNC's rapid is a chord, ours follows the circle of the tool."""
     if not any('cutter radius compensation on' in call for call in pair.reference):
         return
     chords, at = [], None
@@ -297,7 +297,7 @@ def end_of(call):
 
 
 def tolerance_after_units(pair):
-    """A canned cycle behind G20 or G21 restores the figures of G64 in the units of before; here their lengths."""
+    """A canned cycle after G20 or G21: LinuxCNC restores the numbers of G64 in the previous unit; ours restores the lengths."""
     restored = ('SET_MOTION_CONTROL_MODE(CANON_CONTINUOUS', 'SET_NAIVECAM_TOLERANCE(')
     for i, (theirs, mine) in enumerate(zip(pair.reference, pair.ours)):
         if not theirs.startswith(restored) or theirs == mine or NUMBER.sub('#', theirs) != NUMBER.sub('#', mine):
@@ -308,8 +308,8 @@ def tolerance_after_units(pair):
 
 
 def cycle_with_another_height(pair):
-    """A line of a canned cycle that changes R: LinuxCNC goes to the new R beside the hole, down as well, or slanting; ours
-    never leaves the clear height before it is over the hole."""
+    """A line of a canned cycle that changes R: LinuxCNC moves to the new R beside the hole, also downwards or at an angle; ours
+    stays at the clear height until it is over the hole."""
     if not pair.has(r'^\s*(n\d+\s*)?/?\s*[xyz][^\n]*r'):
         return
 
@@ -349,8 +349,7 @@ def thread_passes(pair):
         at = found
 
 
-# Classes that compare the lists element by element come last; lathe_pieces may join the moves that
-# rapid_corners looks for.
+# Classes that compare the lists element by element come last; lathe_pieces may join moves that rapid_corners needs.
 CLASSES = (speed_override_at_end, order_under_compensation, cycle_with_another_height, rapid_corners, context_announced,
            threading_enables_override, lathe_pieces, way_out_of_finishing, narrow_layers, peck_at_the_bottom, long_numbers,
            small_numbers, angles_of_home, orientation_of_back_boring, tolerance_after_units, rapid_corners, thread_passes)
@@ -382,7 +381,7 @@ STRICTER_WITH = {'Must use g0 or g1 with g53': (r'g5\.1', 'lines after a G5.1')}
 
 
 def explain(pair, hasFailed):
-    """The classes that make the two lists equal, or None. What both have failed in has done nothing here."""
+    """The classes that make the two lists equal, or None. Calls of a block that failed on both sides have no effect."""
     used = []
 
     def isDone():
@@ -401,5 +400,5 @@ CHOSEN_SPINDLE = re.compile(r'(Chosen spindle \(\d\)|Spindle) not turning in G(3
 
 
 def isOtherSpindle(program, refusal):
-    """After G96 or G97 $n LinuxCNC's G33 and G76 without $ go by spindle n; here by spindle 0, as the manual says."""
+    """After G96 or G97 $n LinuxCNC's G33 and G76 without $ use spindle n; here they use spindle 0, as the manual states."""
     return CHOSEN_SPINDLE.match(refusal) is not None and re.search(r'g9[67][^\n]*\$[1-9]', program, re.I) is not None

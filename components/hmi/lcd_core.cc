@@ -69,7 +69,7 @@ bool parse_kind(const char *&text, Item &out) noexcept {
     }
 }
 
-/// `digits` with sign and padding, in the field of the item.
+/// Adds sign and padding to `digits`, so that they fill the field of the item.
 Text in_field(const Item &item, const Text &digits, bool negative) noexcept {
     const char sign = negative ? '-' : (item.has_plus ? '+' : '\0');
     const int needed = digits.length + (sign != '\0' ? 1 : 0);

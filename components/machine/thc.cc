@@ -2,9 +2,9 @@
 // thc: torch height control by the arc voltage: adds a correction to the Z axis of a plasma cutter.
 //
 // `volts` is (`encoder-vel` - `scale-offset`) * `vel-scale`. While `enable`, `torch-on` and `arc-ok` (bit)
-// are true and `vel-status` (bit) is - `current-vel` at least `requested-vel` less `velocity-tol` percent -,
-// the torch moves up by `correction-vel` a period when `volts` is below `volts-requested` by more than
-// `voltage-tol`, and down when `volts` is above by more. When the torch is off the correction is removed
+// are true and `vel-status` (bit) is true (`current-vel` is at least `requested-vel` minus `velocity-tol`
+// percent), the torch moves up by `correction-vel` a period when `volts` is below `volts-requested` by more
+// than `voltage-tol`, and down when `volts` is above by more. When the torch is off the correction is removed
 // while Z rises; while enable is false, by correction-vel a period. `z-pos-out` = `z-pos-in` +
 // `offset-value`; `z-fb-out` = z-pos-in. Pins `vel-tol` (not used) and others float; vel-scale, scale-offset,
 // velocity-tol, voltage-tol, correction-vel are parameters.

@@ -2,8 +2,8 @@
 // thcud: torch height control with up and down signals from another controller: adds a correction to the Z
 // axis of a plasma cutter.
 //
-// While `enable`, `torch-on` and `arc-ok` (bit) are true and `vel-status` (bit) is - `current-vel` at least
-// `requested-vel` less `velocity-tol` percent -, the torch moves by `correction-vel` a period up while
+// While `enable`, `torch-on` and `arc-ok` (bit) are true and `vel-status` (bit) is true (`current-vel` is at
+// least `requested-vel` minus `velocity-tol` percent), the torch moves by `correction-vel` a period up while
 // `torch-up` (bit) is true, down while `torch-down` is (not at all while both are). When the torch is off the
 // correction is removed while Z rises (`removing-offset`, bit); while enable is false, by correction-vel a
 // period. `z-pos-out` = `z-pos-in` + `cur-offset`; `z-fb-out` = z-pos-in. Others float; velocity-tol and

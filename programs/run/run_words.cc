@@ -22,7 +22,8 @@ options::CommandLine run_line(RunWords &run, options::Words &rest) {
     line.flag("--realtime",
               "run in real time, in two processes; the terminal asks before the machine is switched on",
               run.realtime);
-    line.flag("--yes", "start without confirmation and without a terminal; later confirmations stay required",
+    line.flag("--yes",
+              "start without confirmation and without a terminal; later confirmations are still required",
               run.confirmed);
     line.text("--trace", "FILE.csv", "write the commanded positions of every servo cycle", run.trace);
     line.text("--certificate", "FILE.json",

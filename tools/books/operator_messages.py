@@ -22,7 +22,7 @@ import texts
 
 PAGE = 'docs/user/when_something_goes_wrong.md'
 TABLES = 'tools/books/messages'
-# Folder of the page, and a link in a cell: relative to the file of its table.
+# Folder of the page. Links in cells are relative to the file of their table.
 FOLDER = 'docs/reference'
 LINK = re.compile(r'\]\((?!https?:)([^)#]+)')
 # Title, name of the file in TABLES, folders whose texts it lists. Programs in Python have help texts only in the catalogue, and are not listed.
