@@ -555,7 +555,7 @@ class Side:
 def compare(name, text, sides, options, verbose, arguments=('-i', 'case.ini', '-f', 'case.hal')):
     results = []
     for side in sides:
-        # Not among the sequences: loadusr of a program that does not exist (LinuxCNC's child runs the file on).
+        # Not tested: loadusr of a program that does not exist (LinuxCNC's child process continues with the HAL file).
         with tempfile.TemporaryDirectory(prefix='compare-') as work:
             folder = pathlib.Path(work)
             os.chmod(folder, 0o777)

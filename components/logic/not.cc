@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// not: `out` is true while `in` is not. All pins bit.
+// not: `out` is the inverse of `in`. All pins bit.
 #include "hal/sdk/component.hh"
 
 namespace mw::components {

@@ -31,11 +31,13 @@ class Line {
     void clear() noexcept { reading_ = Reading::NOTHING; }
     Reading reading() const noexcept { return reading_; }
 
-    double offset() const noexcept { return offset_; }  ///< from the start to the first pixel [units]
+    double offset() const noexcept {
+        return offset_;
+    }  ///< distance from the start to the first pixel [units]
     double pixels_per_unit() const noexcept { return per_unit_; }  ///< greater than 0
     int bits() const noexcept { return 4 * digits_; }
     int count() const noexcept { return count_; }
-    /// Of pixel 0 to count - 1: 0 to 100 [%]. The second highest value is 100 %; the highest value is
+    /// Power of pixel 0 to count - 1: 0 to 100 [%]. The second highest value is 100 %; the highest value is
     /// NO_PIXEL.
     double percent(int index) const noexcept;
     /// The position in the line, in pixels from the first one, at `from_start`. With a negative offset it

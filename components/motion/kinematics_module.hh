@@ -92,7 +92,7 @@ unsigned model_linear(const Model &model, double *slope, unsigned *axes) noexcep
     }                                                                                                        \
     static_assert(true)
 
-/// The same for a module with only one type.
+/// As above, for a module with only one type.
 #define MW_KINEMATICS(model)                                                                                 \
     MW_KINEMATICS_FUNCTIONS(model);                                                                          \
     extern "C" {                                                                                             \

@@ -38,7 +38,7 @@ struct Inputs {
     bool has_feedback_derivative = false;
     double feedback_derivative = 0.0;
     bool usesPreviousTarget = true;  ///< compare the feedback with the command of the previous call
-    bool isIndexEnabled = false;     ///< its falling edge means that command and feedback have jumped
+    bool isIndexEnabled = false;     ///< a falling edge reports that command and feedback have jumped
 };
 
 struct Outputs {

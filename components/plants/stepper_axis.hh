@@ -14,7 +14,7 @@ struct StepperSettings {
     double backlash = 0;              ///< [unit]
     double peak_acceleration = 5000;  ///< pull-out torque at standstill, divided by inertia [unit/s^2]
     double fastest = 500;             ///< speed at which the pull-out torque is zero [unit/s]
-    double lower_end = -1e9, upper_end = 1e9;  ///< where the table hits an end stop [unit]
+    double lower_end = -1e9, upper_end = 1e9;  ///< position of the end stops [unit]
     double microsteps = 4;                     ///< steps of the drive for a full step of the motor
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// From the zero height through the start of the arc to the cut height, and from the end of the cut to idle.
+// The part of a cut from the zero height through the start of the arc to the cut height, and from the end of
+// the cut to idle.
 #include <algorithm>
 
 #include "components/plasma/plasma_core.hh"

@@ -217,7 +217,7 @@ TEST_F(MoveoffTest, GoesBackTheWayItCame) {
     pass(1000);
     EXPECT_GT(bench.get("mv.waypoint-ct"), 10.0);
     enable(false);
-    double farthest = 0.0;  // from both sides of the corner
+    double farthest = 0.0;  // distance from both sides of the corner
     for (int i = 0; i < 20000 && bench.get("mv.dbg-state") != 0.0; ++i) {
         first.pass();
         const double x = bench.get("mv.offset-current-0");

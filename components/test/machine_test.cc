@@ -185,7 +185,7 @@ const std::vector<Table> MACHINES = {
       {"error-in=0", "ok-out=1 count=1"},
       {"error-in=1", "ok-out=0 error-out=1 count=3", 2},
       {"reset=0", "ok-out=0"},
-      {"reset=1", "ok-out=0"},  // not while the error is there
+      {"reset=1", "ok-out=0"},  // no reset while the error is active
       {"error-in=0", "ok-out=0", 10},
       {"reset=0", "ok-out=0"},
       {"reset=1", "ok-out=1"},

@@ -23,7 +23,7 @@ constexpr double CYCLE_S = 0.1;
 /// HAL files and their programs may take long.
 constexpr auto START_TIME = std::chrono::seconds(30);
 
-/// From the current status; false if there is none.
+/// Reads the current status. Returns false if there is none.
 bool isMoving(client::Client &client) {
     return client.read_status().has_value() && client.status().trajectory.isEnabled &&
            !client.status().trajectory.isInPosition;

@@ -32,7 +32,7 @@ template <std::size_t N, class Search>
 Status find_platform(const double *joints, const NewtonTerms &terms, Search &search, double &share,
                      int &iterations) noexcept {
     constexpr double MOST_ITERATIONS = 1000;
-    constexpr double STRIDE = 0.05;  // of the rim; a longer step may reach another solution
+    constexpr double STRIDE = 0.05;  // as a fraction of the rim; a longer step may reach another solution
     constexpr double ROUNDING = 1e-6;
     const int limit = static_cast<int>(std::min(terms.limit, MOST_ITERATIONS));
     double before = 1e300;

@@ -127,7 +127,7 @@ class Rig final : public machine::Machine {
   private:
     struct Wall {
         std::size_t joint = 0;
-        Contact at;  ///< by the slide of the joint
+        Contact at;  ///< range of the slide without contact
     };
     void step_task();
     void run_plants();

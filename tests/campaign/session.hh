@@ -27,7 +27,7 @@ struct Verdict {
     int commands = 0, refused = 0;
     std::map<std::string, int> known;     ///< violations of known rules
     std::map<std::string, int> refusals;  ///< by reason, figures replaced
-    /// Includes the stops by cause; judged: stops during a motion.
+    /// Counts by optional feature, and stops by cause (`judged`: stops during a motion).
     std::map<std::string, Extension> extensions;
     double slowest_stop = 0, worst_time = 0;
     std::uint64_t hash = 0;  ///< of all commanded positions

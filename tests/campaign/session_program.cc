@@ -108,7 +108,7 @@ void Session::run_program(const Act &act) {
         judge_.back_to = rig_->sample();
     }
     if (plan_.design.isJerkLimited && hasTrouble(act, Upset::ADAPTIVE)) {
-        // Where the path may be reversed, changes of the rate use a third of the jerk.
+        // If the path may be reversed, changes of the rate use a third of the jerk.
         judge_.stops_later_s += judge_.time_to_brake();
     }
     isRecording_ = true;
@@ -252,7 +252,7 @@ void Session::step_troubles() {
 }
 
 void Session::begin_stop(const Trouble &t) {
-    constexpr int TO_TASK = 4;  // and from task to motion [cycles]
+    constexpr int TO_TASK = 4;  // time to task, and from task to motion [cycles]
     const JointDesign &joint = plan_.design.joints[static_cast<std::size_t>(t.joint)];
     JointFaults &pins = rig_->joint_faults[static_cast<std::size_t>(t.joint)];
     Extension &count = verdict_.extensions[fmt::format("stop by {}", name_of(t.what))];

@@ -162,7 +162,7 @@ TEST_P(SafetyTest, ALostBoardIsAFault) {
     ASSERT_TRUE(hal().values().set("estop-chain.in1", hal::Value::of_bit(false)).has_value());
     hold_for(cycles(0.5));
     ASSERT_TRUE(guide().isFaulted());
-    // As the session reacts to a fault.
+    // The session reacts to a fault in this way.
     commissioner_->stop();
     EXPECT_FALSE(isEnabled());
     EXPECT_EQ(guide().findings()[guide().current()]->fault, commissioning::Fault::STOPPED);

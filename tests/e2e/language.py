@@ -81,7 +81,7 @@ def check_names_in_path(programs, folder):
 
 
 def check_machine_read(programs, root, folder):
-    """The same bytes in every language, also for faulty input."""
+    """Output has the same bytes in every language, also for faulty input."""
     program = folder / 'run.ngc'
     program.write_text('G21 G17\nG43 H99\nG1 X10 F100\nM2\n')
     ini = root / 'configs/sim/mill_mm.ini'

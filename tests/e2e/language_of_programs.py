@@ -54,7 +54,7 @@ HAL_ERRORS = (  # a command; its error in English, German and Spanish
     ('nosuch', "unknown command 'nosuch'", "unbekannter Befehl 'nosuch'", "orden desconocida 'nosuch'"),
 )
 PREPARED = 'loadrt threads name1=servo period1=1000000\nloadrt and2 count=2\naddf and2.0 servo\nnet o and2.0.out\n'
-# Of words: where there is no realtime process, except in comp files.
+# Command lines with errors, without a realtime process: their messages in English, German and Spanish.
 OTHER_ERRORS = (
     ('halcmd show pin', 'no realtime process is running', 'es läuft kein Echtzeitprozess', 'no hay ningún proceso de tiempo real en marcha'),
     ('halcmd -x', 'unknown option -x', 'unbekannte Option -x', 'opción desconocida -x'),

@@ -24,7 +24,7 @@ using screen::test::TlsPeer;
 const std::string TOKEN(64, 'f');
 constexpr int PATIENCE = 400;  // turns
 
-/// The same numbers for the same bytes.
+/// The same bytes give the same numbers.
 std::uint64_t dice = 1;
 int roll(unsigned char *bytes, int size) {
     for (int i = 0; i < size; ++i) {

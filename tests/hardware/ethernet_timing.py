@@ -115,7 +115,7 @@ def measure(options, count, faults):
                 board.kill()
                 board.wait()
             links.remove()
-    # From the first request to the last write of a thread cycle.
+    # Time from the first request to the last write of a thread cycle.
     busy = [max(one[3] for one in together) - min(one[0] for one in together) for together in zip(*cycles) if all(one[3] for one in together)]
     answer = [one[2] - one[1] for one in cycles[0] if one[2]]
     late = [b[0] - a[0] - 1_000_000 for a, b in zip(cycles[0], cycles[0][1:])]

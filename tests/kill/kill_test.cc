@@ -84,8 +84,8 @@ struct Observer {
         return false;
     }
 
-    /// Neither close to standstill, as at the corners of the square, nor stopped by the watchdog because the
-    /// computer is too busy.
+    /// True if the machine is neither close to standstill (corners of the square) nor stopped by the watchdog
+    /// because the computer is too busy.
     bool isAtFeed() const {
         motion::PublishedStatus::Copy status;
         return channels->status.read(status) && status.value.isEnabled &&

@@ -181,7 +181,7 @@ TEST_F(RealtimeDeath, ACrashInRealtimeNamesTheFunctionAndItsComponent) {
         0.0)
         << log();
     const int status = wait_for_end(task);
-    // Also when its thread hangs in the middle of a cycle.
+    // The end is also in time if its thread hangs in the middle of a cycle.
     EXPECT_LT(Clock::now() - begin, std::chrono::seconds(5)) << "the run hung";
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << status << log();
     expect_nothing_left();

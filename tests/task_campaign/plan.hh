@@ -64,7 +64,7 @@ struct Act {
     Work work = Work::PROGRAM;
     int client = 0;
     std::vector<Line> blocks;      ///< of the program; lines of MDI
-    bool isLineTypedLate = false;  ///< lines of MDI follow each other
+    bool isLineTypedLate = false;  ///< an MDI line is entered after the previous line has ended
     std::uint64_t seed = 0;
     std::vector<Trouble> troubles;
 };

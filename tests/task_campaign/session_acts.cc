@@ -95,7 +95,7 @@ void Session::home(const Act &act) {
     ask(act.client, messages::Mdi{"G0 X1"}, Expected::REFUSED);
 }
 
-/// By a message, and by another program that writes the file.
+/// Sets the table by a message, or by another program that writes the file.
 void Session::set_table(const Act &act) {
     plants::Random random(act.seed);
     Doings d = beliefs_.worlds[0].doings;

@@ -176,7 +176,7 @@ BENCHMARK_CAPTURE(BM_Cycle, 7i95, "7i95", "", "");
 BENCHMARK_CAPTURE(BM_Cycle, 7i97, "7i97", "", "");
 BENCHMARK_CAPTURE(BM_Cycle, 7i80hd_3pwm, "7i80hd-3pwm", "", "");
 
-/// As in a thread that first calls `read-request` of both boards.
+/// Like a thread that first calls `read-request` of both boards.
 void BM_TwoBoards(benchmark::State &state) {
     Driven one("7i76e", "remote 0 card=7i76\n", "num_stepgens=5 num_encoders=1 sserial_port_0=0xxxxxxx");
     Driven two("7i76e", "remote 0 card=7i76\n", "num_stepgens=5 num_encoders=1 sserial_port_0=0xxxxxxx");

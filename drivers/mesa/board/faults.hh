@@ -25,7 +25,7 @@ struct DirectionFaults {
 
 enum class FaultType : std::uint8_t {
     RESET,        ///< registers as at power-up
-    POWER_OFF,    ///< as RESET, and no answers for a time
+    POWER_OFF,    ///< as RESET, and does not answer for a time
     WATCHDOG,     ///< the watchdog bites
     LINK_DOWN,    ///< all packets are lost for a time
     SECOND_HOST,  ///< another host reads registers and counters for a time

@@ -83,7 +83,7 @@ class Program {
     Block scratch_block_;
     std::vector<OLine> olines_;
     std::vector<std::uint32_t>
-        cached_;  ///< by line: index in blocks_, or NO_ID (not parsed yet), or NOT_KEPT
+        cached_;  ///< indexed by line: index in blocks_, NO_ID (not parsed yet) or NOT_KEPT
     std::deque<Block> blocks_;
     std::unordered_map<NameId, int> subs_, fanuc_;
     std::vector<int> bad_olines_;  ///< in order

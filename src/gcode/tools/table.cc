@@ -244,7 +244,7 @@ void Table::check_numbers(Reading &reading) {
 void Table::check_pockets(Reading &reading) const {
     struct Pocket {
         std::size_t first;                  ///< index of its first tool
-        std::optional<std::size_t> second;  ///< of the first with another number
+        std::optional<std::size_t> second;  ///< the first tool with another number
     };
     std::unordered_map<int, Pocket> pockets;
     for (std::size_t later = 0; later < reading.tools.size(); ++later) {

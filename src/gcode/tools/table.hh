@@ -15,7 +15,7 @@
 
 namespace mw::tools {
 
-/// Where a changer puts the tool from the spindle ([EMCIO]RANDOM_TOOLCHANGER).
+/// The position to which a changer returns the tool from the spindle ([EMCIO]RANDOM_TOOLCHANGER).
 enum class Changer : std::uint8_t {
     FIXED,   ///< back to its own pocket: T0 means no tool
     RANDOM,  ///< into the pocket of the new tool: T0 is an ordinary tool

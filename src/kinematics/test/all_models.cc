@@ -166,7 +166,7 @@ void add_points(std::vector<ModelCase> &out) {
                 verdict = Verdict::UNREACHABLE;
             }
         }
-        return verdict;  // this judge does not know the configuration of the legs
+        return verdict;  // this check does not know the configuration of the legs
     };
     out.push_back(std::move(rotary));
 }

@@ -76,7 +76,8 @@ class PieceShape {
     geometry::Pose along_;       ///< end - start, without the part on the circle
     double linear_length2_ = 0;  ///< square of the length of along_
     double angular_length2_ = 0;
-    // Of an arc: the radius at the start, the same vector rotated by 90 degrees, the increase of the radius.
+    // For an arc: the radius at the start, the same vector rotated by 90 degrees, and the increase of the
+    // radius.
     Vec3 normal_, radius_, side_;
     double growth_ = 0;
     bool isCircle_ = false;  ///< an arc that is not a helix or spiral and moves no other length

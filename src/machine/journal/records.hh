@@ -41,7 +41,7 @@ struct Progress {
     std::uint64_t tools = 0;  ///< checksum of the tool table
 };
 
-/// From this block on the state depends on values that cannot be calculated again.
+/// The state depends on values that cannot be calculated again, beginning with this block.
 struct Doubt {
     std::uint64_t block = 0;
     std::int32_t line = 0;

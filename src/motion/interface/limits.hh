@@ -20,7 +20,7 @@ namespace mw::motion {
 /// A path jerk limit below this value switches jerk-limited planning off [machine units/s^3].
 inline constexpr double LEAST_JERK = 1;
 
-/// Which axis each joint moves, and which thread may call the kinematics where joints are not axes.
+/// The axis that each joint moves, and the thread that may call the kinematics if joints are not axes.
 struct AxisMap {
     enum class Kind : std::uint8_t {
         JOINTS_ARE_AXES,  ///< limits of a joint are limits of its axis

@@ -19,7 +19,7 @@ using ::mw::testing::MotionRig;
 struct Gantry {
     HomingRig m{"XYYZ"};
     double widest = 0;       ///< skew so far
-    double widest_legs = 0;  ///< without the search and the final move
+    double widest_legs = 0;  ///< maximum difference without the search and the final move
     bool wasLeg = false;
     double start[2] = {};
 

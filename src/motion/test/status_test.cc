@@ -112,7 +112,7 @@ TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast) {
     EXPECT_EQ(s.queue_depth, 0U);
 }
 
-/// The status is published in parts: a reader gets what the controller reports, whatever has changed.
+/// The status is published in parts: a reader always gets the complete status of the controller.
 TEST(StatusOfMotion, ReadersHaveTheWholeOfIt) {
     MotionRig rig;
     auto reader = std::make_unique<PublishedStatus::Copy>();

@@ -12,7 +12,7 @@ import struct
 from attack_types import attack
 
 NOBODY = 65534
-OWN_CONNECTIONS = 8       # of 64: a user may use all connections of his own machine
+OWN_CONNECTIONS = 8       # of 64: a user may use all connections of a machine that he has started
 FOREIGN_CONNECTIONS = 40
 # Commands that are rejected both by a machine that is cutting and by an idle machine in AUTO mode.
 REJECTED = ('Null', 'JogContinuous', 'JogIncrement', 'JogAbsolute', 'LoadCompensation', 'RigidTapMove', 'OpenProgram', 'Mdi')

@@ -6,7 +6,7 @@
 namespace mw::testing {
 namespace {
 
-constexpr double MIDDLE = 0.4637;     ///< of a column: no position that programs name
+constexpr double MIDDLE = 0.4637;     ///< position inside a column that programs do not name
 constexpr double FACE = 0.001;        ///< contact with the front face is in air [mm]
 constexpr double CHORD_ERROR = 2e-5;  ///< of arcs as chords [mm]
 

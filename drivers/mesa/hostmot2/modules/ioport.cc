@@ -94,8 +94,8 @@ PortWords port_words(std::span<const UsedPin> used, std::span<const GpioPins> pi
     return words;
 }
 
-/// Of a smart serial channel: 0x81 to 0x88 transmit, 0x91 to 0x98 enable it, 0xA1 to 0xA8 with inverted
-/// level.
+/// Function of a smart serial pin: 0x81 to 0x88 transmit, 0x91 to 0x98 transmit enable, 0xA1 to 0xA8 the same
+/// with inverted level.
 std::string serial_output_name(const UsedPin &pin) {
     constexpr unsigned GROUP = 0xF0, TRANSMIT = 0x80, ENABLE = 0x90, NUMBER = 0x0F;
     const unsigned group = pin.function & GROUP;

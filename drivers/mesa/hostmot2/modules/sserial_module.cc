@@ -82,7 +82,7 @@ struct SerialPort {
     std::string card_names;  ///< for messages
     SserialPortPins pins;
     SserialPortControl control;
-    SserialWriteStep step;  ///< of the parameter that is written
+    SserialWriteStep step;  ///< step of the parameter that is being written
     bool doubtful = false;  ///< the last command may have been lost
     std::vector<SerialCard> cards;
     ReadHandle command_read, data_read, status_read;
@@ -343,7 +343,7 @@ class SmartSerial final : public Module {
         const bool first = port.step.number == 0;
         if (!first && !port.doubtful && (card.status_now & FAULTS) != 0) {
             card.status = card.status_now;
-            parameter.known = port.step.value;  // not written again until it changes
+            parameter.known = port.step.value;  // it is not written again until it changes
             port.step = {};
             port.control.finish_setup(port.pins, 1U << static_cast<unsigned>(card.channel));
             return;

@@ -25,7 +25,7 @@ enum LocalAddress : std::uint16_t {
     CHANNEL_STRIDE = 5,
     CHANNELS = 7
 };
-/// Of the data of a channel: 4 bytes, the lowest first.
+/// Offset of the baud rate in the data of a channel: 4 bytes, the lowest first.
 constexpr int BAUDRATE_OFFSET = 42;
 
 }  // namespace

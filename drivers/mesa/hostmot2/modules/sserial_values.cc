@@ -236,7 +236,8 @@ void release_outputs(SserialCardValues &card) noexcept {
 
 std::uint64_t unsigned_bits(const SserialNumber &number, int bits) noexcept {
     const double fraction = std::max(fraction_of(number), 0.0);
-    // Up to 53 bits all values are exact in a double; above, the end must not be rounded up to 2^bits.
+    // With up to 53 bits, all values are exact in a double. With more bits, the maximum must not be rounded
+    // up to 2^bits.
     return fraction >= 1.0 ? mask_of(bits)
                            : static_cast<std::uint64_t>(fraction * static_cast<double>(mask_of(bits)));
 }

@@ -56,7 +56,7 @@ struct SserialField {
     int bits = 0;
     int low_bits = 0;        ///< low bits from the second half of an encoder, in input_low
     int input = -1;          ///< first bit in the words from the card; -1: none
-    int input_low = -1;      ///< of the second half of an encoder
+    int input_low = -1;      ///< input with the second half of an encoder
     int output = -1;         ///< first bit in the words to the card; -1: none
     std::size_t index = 0;   ///< index of its first value in the list of its type
     std::uint64_t held = 0;  ///< bits that remain off until their pin was off

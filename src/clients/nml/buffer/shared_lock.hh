@@ -42,7 +42,7 @@ class SharedLock {
     pthread_mutex_t mutex_;
 };
 
-/// A futex on which processes sleep. Zero is a bell that has not rung.
+/// A futex on which processes sleep. It counts its rings; zero: it has not rung.
 class Bell {
   public:
     std::uint32_t heard() const { return rings_.load(std::memory_order_acquire); }

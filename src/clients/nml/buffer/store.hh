@@ -53,7 +53,7 @@ class Store {
     enum class Outcome {
         DONE,
         NOTHING,   ///< there is no message
-        AGAIN,     ///< there was a write during the read
+        AGAIN,     ///< a write occurred during the read
         NO_ROOM,   ///< no space in the queue now
         TOO_LONG,  ///< too long for the buffer
         DAMAGED,   ///< other data were written to the memory

@@ -85,7 +85,7 @@ class EdgeNode {
     Phase phase_ = Phase::WAITING;
     double phase_end_s_ = 0, retry_s_;
     std::size_t broker_ = 0;
-    bool hasReported_ = false;  ///< it was reported that no broker is reached
+    bool hasReported_ = false;  ///< an unreachable broker has been reported
     std::uint64_t next_bdseq_, bdseq_ = 0;
     TimeMs birth_ = 0;  ///< time of the node's birth; strictly increasing
     std::uint8_t seq_ = 0;

@@ -22,7 +22,7 @@ struct JumpValues {
 /// The lines of a restarted loop.
 struct LoopTurn {
     int first = 0, last = 0;   ///< 0: no loop restarts
-    bool conditional = false;  ///< only its condition ends it
+    bool conditional = false;  ///< it ends only by its condition
 };
 
 /// Executes if, while, do, repeat and their parts, break and continue, and sets the position of the next

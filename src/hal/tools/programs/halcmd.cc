@@ -133,7 +133,7 @@ int halcmd(const std::vector<std::string> &arguments) {
     script::StandardOutput output;
     script::SystemProgramHost programs((*host)->hal());
     script::Session session(**host, programs, output, line->session);
-    // The realtime process has ended, so this command has nothing to do, whatever it waits for.
+    // The realtime process has ended, so this command ends, even while it waits.
     const HostWatch watch(**host, [&host] {
         (void)fail_with(*(*host)->death());
         std::fflush(stdout);

@@ -29,7 +29,7 @@ Situation situation_of(State state, Mode mode, const RunState &run);
 
 /// Null: accepted; else the reason for the rejection.
 const char *refusal_of(CommandClass what, Situation situation);
-/// As above, as a result.
+/// As refusal_of(), as a Result.
 Result<> admit(CommandClass what, Situation situation);
 
 /// docs/reference/states.md.

@@ -154,7 +154,7 @@ FoundModes SearchMachine::found() const {
         }
     };
     for (const auto &[index, entry] : entries_) {
-        if (index > 0 || isRandom()) {  // of a fixed changer: the copy of a tool that has its own entry
+        if (index > 0 || isRandom()) {  // for a fixed changer: the copy of a tool that has a separate entry
             found.settings.emplace_back(gcode::SetToolTableEntry{index, entry});
         }
     }

@@ -24,7 +24,7 @@ class Holds {
     /// `isPathRecorded`: a recorded path for reverse run exists.
     CommandResult take(const SetReverse &command, bool isPathRecorded) noexcept;
     CommandResult take(const SetMaxVelocity &command) noexcept;
-    /// Of feed and rapids; `max_feed_scale` is the machine's maximum.
+    /// Sets the override of feed and rapids; `max_feed_scale` is the machine's maximum.
     CommandResult take(const SetScale &command, double max_feed_scale) noexcept;
     CommandResult take(const SetSwitch &command) noexcept;
 

@@ -172,7 +172,7 @@ void CycleMoves::start_spindle(int direction) {
     canon.take(StartSpindle{spindle, direction > 0, true});
 }
 
-/// From the clearance plane to the bottom and back to plan.clear.
+/// Moves from the clearance plane to the bottom and back to plan.clear.
 void CycleMoves::run_cycle(const CyclePlan &plan) {
     const int normal = plane_axes(state.plane).normal;
     const int direction = state.spindles[static_cast<std::size_t>(state.active_spindle)].direction;

@@ -117,8 +117,8 @@ void join(Profile &chain, const ProfileSegment &before, const ProfileSegment &af
             return;
         }
     }
-    // A rise followed by a fall is a peak, a fall followed by a rise is a slit, whatever the rounding of both
-    // directions.
+    // A rise followed by a fall is a peak, a fall followed by a rise is a slit. This does not depend on
+    // the rounding of both directions.
     const bool folded = dot(from, to) < 0.0 && from.y * to.y < 0.0;
     if (folded ? from.y > 0.0 : bend < -STRAIGHT) {
         append_piece(chain, around(corner, from, to, by));

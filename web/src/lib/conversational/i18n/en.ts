@@ -165,7 +165,7 @@ export const en = {
   'choice.retract.machine': 'Machine Z0 (G53)',
   'choice.retract.safe': 'Safe height',
 
-  'why.feed_rev': 'A cautious value for steel. Use the value of the insert maker.',
+  'why.feed_rev': 'A conservative value for steel. Use the value of the insert manufacturer.',
   'why.speed_mode': 'Constant surface speed gives an even finish; rev/min is for small parts and threads.',
   'why.limit_speed': 'Maximum speed of chuck and part.',
   'why.nose': 'Half of the diameter in the tool table.',
@@ -186,7 +186,7 @@ export const en = {
   'why.safe_x': 'Outside this diameter the tool path is clear.',
   'why.tool': 'From the tool table. The program loads it and applies its length (G43).',
   'why.diameter': 'From the tool table. Change it for a reground tool.',
-  'why.feed': 'A cautious value for aluminium. Use the value of the tool maker.',
+  'why.feed': 'A conservative value for aluminium. Use the value of the tool manufacturer.',
   'why.feed_z': 'Feed of ramps and of moves downwards: about one third of the feed.',
   'why.top': 'Z of the surface before this operation; 0 when the work zero is on it.',
   'why.clearance': 'Rapid moves end at this height above the surface.',
