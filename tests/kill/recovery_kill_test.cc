@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine that is cutting is killed with kill -9, starts again without any manual action, and continues its
-// program at the same position; repeatedly.
+// A machine that is cutting is repeatedly killed with kill -9, restarts without any manual action, and
+// continues its program at the same position.
 #include <deque>
 #include <iostream>
 

@@ -160,7 +160,7 @@ void Asking::spindle() {
                "Most machines set the speed in the program.");
     }
     if (isAsked("spindle") && isChosen("spindle", "speed")) {
-        number("spindle.max", is_foam ? "S word of full heat" : "Maximum spindle speed",
+        number("spindle.max", is_foam ? "S value for full heat" : "Maximum spindle speed",
                is_foam ? 100 : 12000, is_foam ? "" : "rev/min",
                "The speed at full output; see the data sheet of the spindle.");
         within(1, 1e6);
