@@ -21,7 +21,7 @@ struct TimeFigures {
 struct CycleFigures {
     std::size_t cycles = 0;
     std::int64_t period_ns = 0;
-    TimeFigures late;             ///< delay of the begin of a cycle
+    TimeFigures late;             ///< delay of the start of a cycle
     TimeFigures send;             ///< duration until the kernel has accepted the request
     TimeFigures answer;           ///< from the request to its answer
     TimeFigures gap;              ///< between two writes

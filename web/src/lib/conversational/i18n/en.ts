@@ -350,7 +350,7 @@ export const en = {
   'panel.discard_title': 'Unsaved program',
   'panel.discard': 'The values of {name} are not saved and will be lost.',
   'panel.discard_do': 'Discard',
-  'panel.draw': 'Drawing of the values',
+  'panel.draw': 'Drawing of the entered values',
   'panel.default_name': 'Part 1',
   'panel.untitled': 'the new program',
   'panel.step_of': '{number}. {operation}',
