@@ -87,7 +87,7 @@ Result<> RunningMachine::check_idle() {
     const messages::MachineStatus &status = client_.status();
     if (status.task.interp_state != messages::InterpState::IDLE) {
         return fail("the machine is already running a program or an MDI line", {},
-                    status.task.program.empty() ? "" : "open is " + status.task.program.str());
+                    status.task.program.empty() ? "" : "the open program is " + status.task.program.str());
     }
     if (status.trajectory.isEnabled && (status.trajectory.isHoming || !status.trajectory.isInPosition)) {
         return fail("the machine is moving: a jog or homing is active");

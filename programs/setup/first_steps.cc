@@ -100,7 +100,7 @@ std::vector<screen::ChoiceGroup> find_choices() {
     return groups;
 }
 
-/// A copy of a sample; other configurations unchanged.
+/// Copies a sample to the user's folder, and remembers the configuration for the next start.
 Result<FirstStepsSetup::Start> prepare(const std::string &ini) {
     std::string path = ini;
     for (const ConfigurationGroup &group : find_configurations()) {

@@ -44,8 +44,8 @@ inline bool isWithinInOrder(const std::vector<geometry::Pose> &samples,
     for (const geometry::Pose &s : samples) {
         next.clear();
         for (const std::size_t j : reach) {
-            // For this sample the position on the path stays or advances by one point, and further while it
-            // is near.
+            // With this sample the tool stays at its point of the path or advances by one point, and further
+            // while the next points are near the sample.
             const std::size_t seen = next.empty() ? 0 : next.back() + 1;
             std::size_t k = std::max(j, seen);
             if (k == j && pose_distance(s, path[j]) > tolerance) {

@@ -63,7 +63,7 @@ struct Trouble {
 struct Act {
     Work work = Work::PROGRAM;
     int client = 0;
-    std::vector<Line> blocks;      ///< of the program; lines of MDI
+    std::vector<Line> blocks;      ///< blocks of the program, or MDI lines
     bool isLineTypedLate = false;  ///< an MDI line is entered after the previous line has ended
     std::uint64_t seed = 0;
     std::vector<Trouble> troubles;

@@ -232,7 +232,7 @@ describe('a stock from an STL file', () => {
       const whole = simulate(movesOf([SAFE]), { stock: stock as Stock, cell_mm: 0.05 }).field;
       expect(whole.volume() / 200).toBeCloseTo(1, 2);
       const cut = simulate(movesOf([{ at: [0, 10, -3], line: 1, kind: 0 }, { at: [20, 10, -3], line: 2, kind: 1 }]), { stock: stock as Stock, cell_mm: 0.05, tools: new Map([[1, tool({ diameter_mm: 40 })]]) }).field;
-      // The part above half the height is an eighth.
+      // The part above half the height is an eighth of the volume.
       expect(cut.volume() / 175).toBeCloseTo(1, 2);
     }
   });

@@ -49,7 +49,7 @@ struct Cut : Table {
         cycle();
         in.cutting_start = true;
     }
-    /// Runs until that state. False when it is not reached within a second.
+    /// Runs cycles until the cut is in this state. False when it is not reached within a second.
     bool reaches(State state) {
         constexpr int MOST_CYCLES = 1000;
         for (int i = 0; i < MOST_CYCLES; ++i) {

@@ -138,7 +138,7 @@ TEST_F(RetracingPart, APathThatIsDroppedOnTheWayBackEndsWhereItComesToAStand) {
 }
 
 TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort) {
-    // At 20 units/s, then at 5, then it stops.
+    // The path is driven at 20 units/s, then at 5; then it stops.
     constexpr double A = 100;
     limits.path.acceleration.fill(A);
     for (int n = 0; n < 3000; ++n) {

@@ -101,7 +101,8 @@ TEST_F(SpindlesPart, ConstantSurfaceSpeedKeepsTheLimitsOfTheSpindle) {
     }
 }
 
-/// Each has its command, its limits and its override: a command to one changes no other.
+/// Each spindle has its command, its limits and its override: a command to one spindle does not affect the
+/// others.
 TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther) {
     spindles = Spindles(MAX_SPINDLES);
     std::mt19937 random(8);
