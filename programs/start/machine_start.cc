@@ -112,7 +112,7 @@ Result<> MachineStart::make() {
     return {};
 }
 
-/// Screens read the file themselves, beginning with their start.
+/// Creates the file before the screens start, because they read it directly.
 void MachineStart::make_parameter_file() {
     const std::string &path = loaded_.machine.task.parameter_file;
     std::error_code ignored;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A scheduler in real time: each periodic has a thread that sleeps to absolute deadlines.
+// A scheduler in real time: each periodic function has a thread that sleeps to absolute deadlines.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct RealtimeOptions {
 class RealtimeScheduler final : public Scheduler {
   public:
     explicit RealtimeScheduler(Log &log, const RealtimeOptions &options = {});
-    /// Removes all periodics.
+    /// Removes all periodic functions.
     ~RealtimeScheduler() override;
 
     std::int64_t now_ns() const noexcept override;

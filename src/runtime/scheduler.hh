@@ -10,7 +10,7 @@
 
 namespace mw::runtime {
 
-/// Order of periodics that are due at the same virtual time. Among threads: shorter period first, then
+/// Order of functions that are due at the same virtual time. Among threads: shorter period first, then
 /// creation order. Under the realtime clock it is the order of priorities; only THREAD and PLANNER have
 /// realtime priority.
 enum class Order : std::uint8_t { THREAD, PLANNER, TASK, UI };
@@ -26,7 +26,7 @@ struct PeriodicSpec {
     void *argument = nullptr;
 };
 
-/// Statistics of a periodic since it was started.
+/// Statistics of a periodic function since it was started.
 struct PeriodicStats {
     std::uint64_t runs = 0;
     std::uint64_t overruns = 0;       ///< releases skipped because the previous run was late or still running
@@ -45,14 +45,14 @@ class Scheduler {
     virtual bool isRealtime() const noexcept { return false; }
     /// Calls `spec.function` in every period, beginning with the next multiple of the period. [not realtime]
     virtual Result<PeriodicId> add(const PeriodicSpec &spec) = 0;
-    /// After the call returns, the function of this periodic does not run and is not called again. [not
+    /// After the call returns, the function does not run and is not called again. [not
     /// realtime]
     virtual void remove(PeriodicId id) = 0;
     virtual PeriodicStats stats(PeriodicId id) const = 0;
-    /// Release time of the current period of the calling periodic; 0 in other threads and under the virtual
+    /// Release time of the current period of the calling function; 0 in other threads and under the virtual
     /// clock. [any thread, realtime-safe]
     virtual std::int64_t current_release_ns() const noexcept { return 0; }
-    /// Shifts each release of the calling periodic by a further `ns`, at most one percent of the period,
+    /// Shifts each release of the calling function by a further `ns`, at most one percent of the period,
     /// until the next call. False in other threads and under the virtual clock. [realtime-safe]
     virtual bool set_correction_ns(std::int64_t /*ns*/) noexcept { return false; }
 };

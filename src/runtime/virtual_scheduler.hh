@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A scheduler in virtual time. It runs all periodics that are due in a fixed order, then sets the time to the
+// A scheduler in virtual time. It runs all functions that are due in a fixed order, then sets the time to the
 // next deadline.
 #pragma once
 
@@ -15,13 +15,13 @@ class VirtualScheduler final : public Scheduler {
   public:
     std::int64_t now_ns() const noexcept override { return now_ns_; }
     bool isVirtual() const noexcept override { return true; }
-    /// Periodics may be added and removed while a periodic runs. A new periodic starts at the next multiple
+    /// Functions may be added and removed while a function runs. A new function starts at the next multiple
     /// of its period.
     Result<PeriodicId> add(const PeriodicSpec &spec) override;
     void remove(PeriodicId id) override;
     PeriodicStats stats(PeriodicId id) const override;
 
-    /// Sets the time to the next deadline and runs all periodics due then. False when there are no periodics.
+    /// Sets the time to the next deadline and runs all functions due then. False when there are none.
     bool step() noexcept;
     /// Runs every deadline up to and including `time_ns`, then sets the time to it.
     void run_until(std::int64_t time_ns) noexcept;
@@ -43,7 +43,7 @@ class VirtualScheduler final : public Scheduler {
     void sweep() noexcept;
 
     std::vector<Entry> entries_;  ///< in the order of execution at equal times
-    std::vector<Entry> added_;    ///< added while a periodic runs
+    std::vector<Entry> added_;    ///< added while a function runs
     std::int64_t now_ns_ = 0;
     std::int32_t last_id_ = 0;
     bool running_ = false;

@@ -260,7 +260,7 @@ double JointDesign::screw_error_at(double x) const {
 
 double JointDesign::slide_at(double turned) const {
     double x = turned;
-    constexpr int ROUNDS = 4;  // each factor gains two digits and more
+    constexpr int ROUNDS = 4;  // each round adds at least two exact digits
     for (int i = 0; i < ROUNDS && screw_error > 0; ++i) {
         x = turned - screw_error_at(x);
     }

@@ -137,7 +137,7 @@ def check_refusals(bench):
 
 
 def check_by_command(bench):
-    """With its test run; again from the saved answers."""
+    """Setup writes a machine and runs it; a second setup with the saved answers writes the same machine."""
     first = bench.folder / 'deep/shop/first'
     done = bench.run('setup', first, 'kind=router', 'drives=stepper', 'switches=home', 'switch.contacts=closed', 'x.max=500',
                      'y.way_per_turn=-10', 'name=Fräse 1')

@@ -184,7 +184,8 @@ struct Hole {
     double back_rpm = 0;  ///< maximum speed during the retract
 };
 
-/// From samples after `from`, once the tool is 4 deep. `sense`: spindle direction during the feed in.
+/// The hole according to the samples after `from`, beginning when the tool is 4 deep. `sense`: spindle
+/// direction during the feed in.
 inline Hole hole_of(const std::vector<SpindleBench::Sample> &s, std::size_t from, double pitch,
                     double sense = 1) {
     Hole hole;
