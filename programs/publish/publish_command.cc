@@ -21,7 +21,7 @@
 #include "clients/publish/assembly/machine_reader.hh"
 #include "clients/publish/assembly/settings.hh"
 #include "clients/publish/mtconnect/service.hh"
-#include "clients/screen/server.hh"
+#include "clients/screen/server/server.hh"
 #include "hal/core/instance.hh"
 #include "programs/command_words.hh"
 #include "programs/commands.hh"

@@ -25,7 +25,7 @@
 #include "base/temporary_file.hh"
 #include "base/text.hh"
 #include "clients/screen/documents.hh"
-#include "clients/screen/files.hh"
+#include "clients/screen/files/files.hh"
 
 namespace mw::programs {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/ini/ini_file.hh"
 #include "base/result.hh"
-#include "clients/screen/piece_queue.hh"
+#include "clients/screen/http/piece_queue.hh"
 
 namespace mw::programs {
 

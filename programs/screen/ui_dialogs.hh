@@ -6,7 +6,7 @@
 
 #include "base/diagnostics/sink.hh"
 #include "base/ini/ini_file.hh"
-#include "clients/screen/dialogs.hh"
+#include "clients/screen/hal/dialogs.hh"
 
 namespace mw::programs {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/diagnostics/sink.hh"
-#include "clients/screen/server.hh"
+#include "clients/screen/server/server.hh"
 
 namespace mw::programs {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/diagnostics/sink.hh"
-#include "clients/screen/machine_facts.hh"
-#include "clients/screen/path_geometry.hh"
+#include "clients/screen/facts/machine_facts.hh"
+#include "clients/screen/path/path_geometry.hh"
 #include "machine/config/loaded_config.hh"
 
 namespace mw::programs {

@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 
 #include "base/thread_priority.hh"
-#include "clients/screen/descriptors.hh"
-#include "clients/screen/path_chunks.hh"
-#include "clients/screen/time_chunks.hh"
+#include "clients/screen/path/path_chunks.hh"
+#include "clients/screen/path/time_chunks.hh"
+#include "clients/screen/server/descriptors.hh"
 #include "machine/analysis/program_check.hh"
 #include "machine/analysis/time_estimate.hh"
 #include "machine/config/ini_parameters.hh"

@@ -11,10 +11,10 @@
 #include <string>
 #include <thread>
 
-#include "clients/screen/http_types.hh"
-#include "clients/screen/path_geometry.hh"
-#include "clients/screen/piece_queue.hh"
-#include "clients/screen/time_chunks.hh"
+#include "clients/screen/http/http_types.hh"
+#include "clients/screen/http/piece_queue.hh"
+#include "clients/screen/path/path_geometry.hh"
+#include "clients/screen/path/time_chunks.hh"
 #include "gcode/analysis/preview.hh"
 #include "machine/config/loaded_config.hh"
 

@@ -7,7 +7,7 @@
 
 #include "base/diagnostics/sink.hh"
 #include "base/ini/ini_file.hh"
-#include "clients/screen/machine_facts.hh"
+#include "clients/screen/facts/machine_facts.hh"
 
 namespace mw::programs {
 

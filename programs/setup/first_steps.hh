@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "clients/screen/first_steps.hh"
+#include "clients/screen/setup/first_steps.hh"
 #include "programs/setup/configurations.hh"
 
 namespace mw::programs {

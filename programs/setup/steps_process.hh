@@ -2,7 +2,7 @@
 // `millwright commission check --messages` as a child process, for the page of the first steps.
 #pragma once
 
-#include "clients/screen/first_steps.hh"
+#include "clients/screen/setup/first_steps.hh"
 
 namespace mw::programs {
 

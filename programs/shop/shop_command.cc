@@ -18,7 +18,7 @@
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "clients/publish/assembly/settings.hh"
-#include "clients/screen/server.hh"
+#include "clients/screen/server/server.hh"
 #include "clients/shop/assembly/collector.hh"
 #include "clients/shop/assembly/settings.hh"
 #include "clients/shop/notify/notifier.hh"

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "clients/screen/server.hh"
+#include "clients/screen/server/server.hh"
 #include "tests/fuzz/web_rig.hh"
 
 namespace {

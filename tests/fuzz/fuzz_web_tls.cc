@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "clients/screen/server.hh"
+#include "clients/screen/server/server.hh"
 #include "clients/screen/test/tls_peer.hh"
 #include "tests/fuzz/web_rig.hh"
 

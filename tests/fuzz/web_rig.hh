@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "clients/screen/api.hh"
+#include "clients/screen/routes/api.hh"
 #include "messages/mailbox/command_server.hh"
 
 namespace mw::fuzz {

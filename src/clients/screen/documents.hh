@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
-#include "clients/screen/http_types.hh"
-#include "clients/screen/machine_facts.hh"
-#include "clients/screen/time_chunks.hh"
+#include "clients/screen/facts/machine_facts.hh"
+#include "clients/screen/http/http_types.hh"
+#include "clients/screen/path/time_chunks.hh"
 #include "messages/client/client.hh"
 
 namespace mw::screen {

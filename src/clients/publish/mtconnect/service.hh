@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "clients/publish/mtconnect/agent.hh"
-#include "clients/screen/http_types.hh"
+#include "clients/screen/http/http_types.hh"
 
 namespace mw::publish::mtconnect {
 

@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.hh"
-#include "clients/screen/access.hh"
-#include "clients/screen/secrets.hh"
+#include "clients/screen/access/access.hh"
+#include "clients/screen/access/secrets.hh"
 
 namespace mw::screen {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/screen/access.hh"
-#include "clients/screen/api.hh"
+#include "clients/screen/access/access.hh"
+#include "clients/screen/routes/api.hh"
 #include "clients/screen/test/fakes.hh"
 #include "messages/declarations/catalogue.hh"
 #include "messages/declarations/json.hh"

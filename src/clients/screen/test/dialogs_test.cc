@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Tests questions of HAL to the operator (J2).
-#include "clients/screen/dialogs.hh"
+#include "clients/screen/hal/dialogs.hh"
 #include "components/test/bench.hh"
 
 namespace mw::screen {

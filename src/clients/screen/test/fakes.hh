@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "clients/screen/background_jobs.hh"
-#include "clients/screen/http_types.hh"
+#include "clients/screen/http/background_jobs.hh"
+#include "clients/screen/http/http_types.hh"
 #include "messages/client/client.hh"
 #include "messages/mailbox/command_server.hh"
 

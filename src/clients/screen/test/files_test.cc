@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.hh"
-#include "clients/screen/files.hh"
+#include "clients/screen/files/files.hh"
 
 namespace mw::screen {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "clients/screen/hal_service.hh"
+#include "clients/screen/hal/hal_service.hh"
 #include "components/test/bench.hh"
 
 namespace mw::screen {

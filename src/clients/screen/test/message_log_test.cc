@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/screen/message_log.hh"
+#include "clients/screen/files/message_log.hh"
 
 namespace mw::screen {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/screen/path_chunks.hh"
+#include "clients/screen/path/path_chunks.hh"
 
 namespace mw::screen {
 namespace {

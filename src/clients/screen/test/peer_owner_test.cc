@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/screen/peer_owner.hh"
+#include "clients/screen/access/peer_owner.hh"
 
 namespace mw::screen {
 namespace {

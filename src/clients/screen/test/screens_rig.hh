@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/screen/screens.hh"
+#include "clients/screen/session/screens.hh"
 #include "clients/screen/test/fakes.hh"
 
 namespace mw::screen::test {

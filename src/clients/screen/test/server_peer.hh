@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/screen/server.hh"
+#include "clients/screen/server/server.hh"
 
 namespace mw::screen::test {
 

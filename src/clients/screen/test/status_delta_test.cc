@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/screen/status_delta.hh"
+#include "clients/screen/status/status_delta.hh"
 #include "messages/declarations/json.hh"
 #include "messages/declarations/value.hh"
 

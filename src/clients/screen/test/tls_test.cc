@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/screen/server.hh"
+#include "clients/screen/server/server.hh"
 #include "clients/screen/test/tls_peer.hh"
 
 namespace mw::screen {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.hh"
-#include "clients/screen/user_files.hh"
+#include "clients/screen/files/user_files.hh"
 
 namespace mw::screen {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "clients/screen/http_types.hh"
+#include "clients/screen/http/http_types.hh"
 #include "clients/shop/store/database.hh"
 
 namespace mw::shop {
