@@ -16,7 +16,7 @@ MAY_USE = {
     'hal': ('base', 'runtime'),
     'motion': ('base', 'hal', 'kinematics', 'trajectory'),
     'machine': ('base', 'runtime', 'hal', 'kinematics', 'trajectory', 'gcode', 'messages', 'motion'),
-    'clients': ('base', 'runtime', 'hal', 'gcode', 'messages', 'machine/setup'),
+    'clients': ('base', 'runtime', 'hal', 'gcode', 'messages', 'machine/setup', 'machine/config', 'machine/analysis', 'machine/tools'),
     'drivers': ('base', 'hal'),
     'programs': ('base', 'runtime', 'hal', 'kinematics', 'trajectory', 'gcode', 'messages', 'motion', 'machine', 'clients', 'drivers'),
     'components': ('base', 'hal', 'kinematics', 'trajectory', 'motion', 'machine/io'),
@@ -35,6 +35,7 @@ ORDER = {
     'machine': ('setup', 'commissioning', 'io', 'journal', 'task', 'config', 'analysis', 'tools', 'halui', 'assembly'),
     'machine/task': ('link', 'sequencer', 'states', 'run', 'control'),
     'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'publish', 'shop', 'python'),
+    'clients/screen': ('http', 'access', 'server', 'facts', 'status', 'hal', 'path', 'files', 'session', 'setup', 'routes', 'assembly'),
     'clients/publish': ('', 'sparkplug', 'mtconnect', 'assembly'),
     'clients/shop': ('', 'host', 'store', 'notify', 'web', 'assembly'),
     'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
@@ -49,10 +50,14 @@ NEVER = {
     'motion/servo': ('hal',),
     'machine/journal': ('hal', 'messages', 'motion', 'gcode'),
     'machine/setup': ('hal', 'messages', 'motion', 'gcode'),
+    # Clients take part in a machine only by messages. The screen also reads the INI file and analyses programs for it.
+    **{f'clients/{client}': ('machine',) for client in ('nml', 'rsh', 'schedule', 'tcl', 'python')},
+    **{f'clients/screen/{folder}': ('machine', 'hal', 'messages/client') for folder in ('http', 'access', 'server')},
+    **{f'clients/screen/{folder}': ('machine',) for folder in ('facts', 'status', 'hal', 'files', 'session', 'routes')},
     # A publisher reads a machine and cannot command it.
-    'clients/publish': ('hal', 'messages/client/client.hh', 'messages/mailbox/command_server.hh', 'messages/declarations/command.hh'),
+    'clients/publish': ('hal', 'machine', 'messages/client/client.hh', 'messages/mailbox/command_server.hh', 'messages/declarations/command.hh'),
     'programs/publish': ('messages/client/client.hh', 'messages/declarations/command.hh', 'machine', 'motion'),
-    'clients/shop': ('hal', 'messages'),
+    'clients/shop': ('hal', 'messages', 'machine'),
     'programs/shop': ('hal', 'messages', 'machine', 'motion'),
     # Driver and simulated board are developed independently, so that each reveals the errors of the other.
     'drivers/mesa/board': ('hal', 'drivers/mesa/hostmot2', 'drivers/mesa/ethernet', 'drivers/mesa/direct', 'drivers/mesa/pci',

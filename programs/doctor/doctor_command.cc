@@ -14,10 +14,10 @@
 #include "base/options/letters.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "clients/screen/assembly/ini_facts.hh"
+#include "clients/screen/hal/dialog_facts.hh"
 #include "programs/commands.hh"
 #include "programs/doctor/examine.hh"
-#include "programs/screen/ui_dialogs.hh"
-#include "programs/screen/ui_facts.hh"
 
 namespace mw::programs {
 namespace {
@@ -68,9 +68,9 @@ const char *kind_of(diagnostics::Severity severity) {
 void examine_screen(const machine::LoadedConfig &loaded, diagnostics::Sink &sink) {
     const std::vector<std::string> words = split_words(loaded.machine.display);
     if (!words.empty() && words[0] == "millwright") {
-        static_cast<void>(machine_facts(loaded, sink));
-        static_cast<void>(status_period_s(loaded.ini, sink));
-        static_cast<void>(dialog_facts(loaded.ini, sink));
+        static_cast<void>(screen::machine_facts(loaded, sink));
+        static_cast<void>(screen::status_period_s(loaded.ini, sink));
+        static_cast<void>(screen::dialog_facts(loaded.ini, sink));
     }
 }
 

@@ -14,10 +14,10 @@
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "base/whole_path.hh"
+#include "clients/screen/files/filter.hh"
 #include "hal/core/instance.hh"
 #include "machine/journal/writer.hh"
 #include "messages/client/shown_message.hh"
-#include "programs/run/ui_filter.hh"
 
 namespace mw::programs {
 namespace {
@@ -82,7 +82,7 @@ Result<> MachineStart::prepare() {
 
 Result<> MachineStart::make() {
     settings_.options.isLasting = true;
-    loaded_.machine.task.confinement.program_folders.push_back(filtered_folder(instance_));
+    loaded_.machine.task.confinement.program_folders.push_back(screen::filtered_folder(instance_));
     auto made = machine::make_realtime_machine({loaded_.ini, loaded_.reader, loaded_.machine, sink_},
                                                settings_.options);
     if (!made.has_value()) {
@@ -231,7 +231,7 @@ void MachineStart::run_shutdown_file() {
 /// Reports faults to operators, and each result on the terminal.
 void MachineStart::tell_certificates() {
     while (auto finding = certifier_->take_finding()) {
-        const std::string file = last_certificate_file(loaded_.machine);
+        const std::string file = machine::last_certificate_file(loaded_.machine);
         if (!finding->json.empty() && !file.empty()) {
             machine_->journal()->keep_file(file, std::move(finding->json));
         }

@@ -29,13 +29,8 @@ std::optional<std::uint32_t> file_of(const motion::PathBody &body) {
 
 }  // namespace
 
-std::string last_certificate_file(const machine::MachineConfig &machine) {
-    const std::string &parameters = machine.task.parameter_file;
-    return parameters.empty() ? parameters : parameters + ".certificate.json";
-}
-
 ProgramCertifier::ProgramCertifier(machine::Machine &machine, const machine::MachineConfig &config)
-    : machine_(machine), config_(config), file_(last_certificate_file(config)) {
+    : machine_(machine), config_(config), file_(machine::last_certificate_file(config)) {
     machine_.task().set_move_listener(
         [this](const task::SentMove &move) { sent_.push_back({move.id, move.start, move.body}); });
     thread_ = std::jthread([this](const std::stop_token &stop) { run(stop); });

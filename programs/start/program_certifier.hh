@@ -19,10 +19,6 @@
 
 namespace mw::programs {
 
-/// The file of the last program's certificate, beside the parameter file; empty if there is no parameter
-/// file.
-std::string last_certificate_file(const machine::MachineConfig &machine);
-
 /// Task's thread only passes on moves and the start and end of programs. A thread of this class reads the
 /// samples of the servo thread and calculates. Task's thread passes the result to the journal's writer,
 /// because a disk that does not answer must not prevent the machine from ending. During its lifetime it is

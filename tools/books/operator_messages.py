@@ -34,7 +34,7 @@ AREAS = (
     ('HAL', 'hal', ('src/hal/core', 'src/hal/capi', 'src/hal/host', 'src/hal/script', 'drivers')),
     ('INI files', 'ini', ('src/base/ini',)),
     ('Start and end of the machine', 'start', ('programs/start', 'src/runtime', 'src/base/diagnostics')),
-    ('Programs: run, check, doctor, screen, setup', 'programs', ('programs/doctor', 'programs/run', 'programs/screen', 'programs/setup', 'src/base/options')),
+    ('Programs: run, check, doctor, screen, setup', 'programs', ('programs/doctor', 'programs/run', 'programs/screen', 'programs/setup', 'src/clients/screen', 'src/base/options')),
     ('halcompile and HAL tools', 'hal_tools', ('src/hal/halcompile', 'src/hal/tools')),
     ('Drives and servers of remote clients', 'servers', ('programs/mains', 'programs/remote', 'programs/publish', 'programs/shop', 'src/clients/publish', 'src/clients/shop')),
 )

@@ -48,6 +48,11 @@ const motion::MoveTerms *terms_of(const motion::PathBody &body) {
 
 }  // namespace
 
+std::string last_certificate_file(const MachineConfig &machine) {
+    const std::string &parameters = machine.task.parameter_file;
+    return parameters.empty() ? parameters : parameters + ".certificate.json";
+}
+
 CertificateSettings certificate_settings(const MachineConfig &machine) {
     const motion::Settings settings = motion::settings_of(machine.parameters);
     CertificateSettings out;

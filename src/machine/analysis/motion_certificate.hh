@@ -25,6 +25,10 @@ struct CertificateSettings {
 /// only if motion applies them ([TRAJ]PLANNER_TYPE).
 CertificateSettings certificate_settings(const MachineConfig &machine);
 
+/// The file of the last program's certificate, beside the parameter file; empty if there is no parameter
+/// file.
+std::string last_certificate_file(const MachineConfig &machine);
+
 struct Certificate {
     std::vector<CoordinateUse> uses;
     Deviations deviations;

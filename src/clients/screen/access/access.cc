@@ -9,7 +9,8 @@
 
 #include "base/text.hh"
 #include "clients/screen/access/secrets.hh"
-#include "clients/screen/documents.hh"
+#include "clients/screen/http/error_response.hh"
+#include "messages/declarations/json_parse.hh"
 
 namespace mw::screen {
 namespace {
@@ -150,6 +151,18 @@ Role Access::role_of_token(const Credentials &shown, int port) const {
     const std::string_view kept = cookie_value(shown.cookie, cookie_name(port));
     return kept.empty() ? Role::NOBODY : cookies_.role_of(kept);
 }
+
+namespace {
+
+/// The token of {"token": "..."}; nothing for other texts.
+std::optional<std::string> token_of_login(std::string_view text) {
+    const nlohmann::ordered_json json = messages::parse_json(text);
+    const auto token = json.is_object() ? json.find("token") : json.end();
+    const bool is_token = json.is_object() && token != json.end() && token->is_string();
+    return is_token ? std::optional(token->get<std::string>()) : std::nullopt;
+}
+
+}  // namespace
 
 Response Access::login(const Request &request, int port, std::int64_t now_ns) {
     const auto answer = [this](Role role) {

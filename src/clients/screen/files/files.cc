@@ -17,7 +17,8 @@
 
 #include "base/temporary_file.hh"
 #include "base/text.hh"
-#include "clients/screen/documents.hh"
+#include "clients/screen/files/file_documents.hh"
+#include "clients/screen/http/error_response.hh"
 #include "clients/screen/server/descriptors.hh"
 
 namespace mw::screen {

@@ -10,7 +10,8 @@
 
 #include "base/atomic_file.hh"
 #include "base/text.hh"
-#include "clients/screen/documents.hh"
+#include "clients/screen/files/file_documents.hh"
+#include "clients/screen/http/error_response.hh"
 
 namespace mw::screen {
 namespace {

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "clients/screen/documents.hh"
+#include "clients/screen/http/error_response.hh"
 #include "messages/declarations/json_parse.hh"
 
 namespace mw::screen {

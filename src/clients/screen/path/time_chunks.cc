@@ -3,10 +3,30 @@
 
 #include <utility>
 
-#include "clients/screen/documents.hh"
+#include "clients/screen/http/json_text.hh"
 #include "clients/screen/path/detail/chunk.hh"
 
 namespace mw::screen {
+namespace {
+
+std::string time_sum_document(const TimeSum &sum) {
+    Json slowest = Json::array();
+    for (const SlowSpot &spot : sum.slowest) {
+        slowest.push_back({{"file", spot.file},
+                           {"is_in_program", spot.in_program},
+                           {"line", spot.line},
+                           {"lost_s", spot.lost_s},
+                           {"reason", spot.reason}});
+    }
+    return text_of(Json{{"total_s", sum.total_s},
+                        {"cutting_s", sum.cutting_s},
+                        {"rapid_s", sum.rapid_s},
+                        {"dwell_s", sum.dwell_s},
+                        {"is_complete", sum.isComplete},
+                        {"slowest", std::move(slowest)}});
+}
+
+}  // namespace
 
 void TimeChunks::move(std::uint32_t point, std::uint32_t line, double seconds, double speed) {
     moves_.push_back({point, line, static_cast<float>(seconds), static_cast<float>(speed)});

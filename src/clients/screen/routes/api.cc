@@ -13,6 +13,10 @@
 #include "base/duration.hh"
 #include "base/text.hh"
 #include "clients/screen/access/access.hh"
+#include "clients/screen/facts/machine_document.hh"
+#include "clients/screen/facts/panel.hh"
+#include "clients/screen/http/error_response.hh"
+#include "clients/screen/status/schema.hh"
 #include "messages/declarations/json.hh"
 
 namespace mw::screen {

@@ -10,7 +10,7 @@
 #include "base/result.hh"
 #include "clients/screen/access/access.hh"
 #include "clients/screen/access/peer_owner.hh"
-#include "clients/screen/access/secrets.hh"
+#include "clients/screen/access/remote_access.hh"
 #include "clients/screen/http/http_types.hh"
 
 namespace mw::screen {
@@ -40,16 +40,6 @@ struct ServerLimits {
     std::chrono::milliseconds request_time{30000};
     /// Interval of checks whether the client of a long answer has disconnected.
     std::chrono::milliseconds check_time{100};
-};
-
-/// The port for other computers.
-struct RemoteDoor {
-    std::string address;  ///< address of this computer; 0.0.0.0 or :: for all
-    int port = 0;         ///< 0: any free port
-    /// Names by which browsers may call it, in addition to its address.
-    std::vector<std::string> names;
-    Access access;  ///< with tokens if there is TLS
-    std::optional<Certificate> tls;
 };
 
 struct ServerOptions {

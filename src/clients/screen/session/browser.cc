@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/overloaded.hh"
+#include "clients/screen/http/error_response.hh"
 #include "messages/mailbox/stops.hh"
 
 namespace mw::screen {

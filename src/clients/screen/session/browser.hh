@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "clients/screen/access/origin_check.hh"
-#include "clients/screen/documents.hh"
+#include "clients/screen/http/http_types.hh"
 #include "clients/screen/session/lateness.hh"
+#include "clients/screen/session/socket_texts.hh"
 #include "clients/screen/status/status_delta.hh"
 #include "messages/client/client.hh"
 

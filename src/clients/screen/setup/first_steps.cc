@@ -8,8 +8,8 @@
 #include "base/atomic_file.hh"
 #include "base/text.hh"
 #include "clients/screen/access/secrets.hh"
-#include "clients/screen/documents.hh"
 #include "clients/screen/files/files.hh"
+#include "clients/screen/http/error_response.hh"
 #include "machine/setup/files.hh"
 
 namespace mw::screen {

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "clients/screen/documents.hh"
+#include "clients/screen/http/error_response.hh"
 #include "clients/screen/server/detail/session.hh"
 
 namespace mw::screen::detail {

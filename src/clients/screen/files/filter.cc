@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "programs/run/ui_filter.hh"
+#include "clients/screen/files/filter.hh"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -24,16 +24,29 @@
 
 #include "base/temporary_file.hh"
 #include "base/text.hh"
-#include "clients/screen/documents.hh"
 #include "clients/screen/files/files.hh"
+#include "clients/screen/http/json_text.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t MOST_TOLD = 2000;  ///< maximum size of the stderr output [bytes]
+
+/// Report of a filter: its progress, or its result.
+std::string filter_progress_text(int percent) {
+    return member_text("progress", percent) + '\n';
+}
+
+std::string filter_made_text(std::string_view path) {
+    return member_text("made", std::string(path)) + '\n';
+}
+
+std::string filter_error_text(std::string_view why) {
+    return member_text("error", std::string(why)) + '\n';
+}
 
 std::string last_error() {
     return std::strerror(errno);
@@ -141,7 +154,7 @@ class Child {
 /// Lines of stderr: progress, or messages.
 class Told {
   public:
-    Told(screen::PieceQueue &pieces) : pieces_(pieces) {}
+    Told(PieceQueue &pieces) : pieces_(pieces) {}
     void take(const std::string &bytes) {
         rest_ += bytes;
         for (std::size_t end = rest_.find('\n'); end != std::string::npos; end = rest_.find('\n')) {
@@ -162,7 +175,7 @@ class Told {
             const int now = percent.has_value() ? static_cast<int>(std::clamp(*percent, 0.0, 100.0)) : shown_;
             if (now != shown_) {
                 shown_ = now;
-                pieces_.push(screen::filter_progress_text(now));
+                pieces_.push(filter_progress_text(now));
             }
             return;
         }
@@ -171,7 +184,7 @@ class Told {
             said_.erase(0, said_.size() - MOST_TOLD);
         }
     }
-    screen::PieceQueue &pieces_;
+    PieceQueue &pieces_;
     std::string rest_, said_;
     int shown_ = -1;
 };
@@ -184,11 +197,11 @@ std::string how(int status) {
 bool isTooLarge(int output) {
     struct stat facts{};
     return ::fstat(output, &facts) == 0 &&
-           static_cast<std::uint64_t>(facts.st_size) > screen::ProgramFiles::MOST_BYTES;
+           static_cast<std::uint64_t>(facts.st_size) > ProgramFiles::MOST_BYTES;
 }
 
 /// Writes into the open file `output`.
-Result<> fill(const FilterRun &run, int output, screen::PieceQueue &pieces) {
+Result<> fill(const FilterRun &run, int output, PieceQueue &pieces) {
     constexpr auto PATIENCE = std::chrono::seconds(1);
     Child child;
     if (const Result<> started = child.start(run, output); !started.has_value()) {
@@ -255,8 +268,8 @@ std::string filtered_folder(const std::string &instance) {
     return base + "/millwright/filtered/" + instance;
 }
 
-void run_filter(const FilterRun &run, screen::PieceQueue &pieces) {
-    const auto refuse = [&](const std::string &why) { pieces.push(screen::filter_error_text(why)); };
+void run_filter(const FilterRun &run, PieceQueue &pieces) {
+    const auto refuse = [&](const std::string &why) { pieces.push(filter_error_text(why)); };
     std::error_code error;
     const fs::path folder = fs::path(run.output).parent_path();
     fs::create_directories(folder, error);
@@ -278,7 +291,7 @@ void run_filter(const FilterRun &run, screen::PieceQueue &pieces) {
         refuse(made.error().message);
         return;
     }
-    pieces.push(screen::filter_made_text(run.output));
+    pieces.push(filter_made_text(run.output));
 }
 
-}  // namespace mw::programs
+}  // namespace mw::screen

@@ -18,7 +18,7 @@
 #include "gcode/analysis/preview.hh"
 #include "machine/config/loaded_config.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 
 /// Runs no Python and reads no HAL values. All calls come from one thread.
 class PathReaders {
@@ -32,9 +32,9 @@ class PathReaders {
         double cpu_s = 300, time_s = 900;
     };
 
-    PathReaders(const machine::LoadedConfig &loaded, screen::PathLook look)
+    PathReaders(const machine::LoadedConfig &loaded, PathLook look)
         : PathReaders(loaded, std::move(look), Limits{}) {}
-    PathReaders(const machine::LoadedConfig &loaded, screen::PathLook look, const Limits &limits)
+    PathReaders(const machine::LoadedConfig &loaded, PathLook look, const Limits &limits)
         : loaded_(loaded), look_(std::move(look)), limits_(limits) {}
     /// Cancels all readers.
     ~PathReaders();
@@ -42,37 +42,33 @@ class PathReaders {
     PathReaders &operator=(const PathReaders &) = delete;
 
     /// The chunks of docs/reference/api.md, while the program is read; an error when too many are being read.
-    Result<std::shared_ptr<screen::PieceQueue>> read(const std::string &path,
-                                                     const screen::Requester &by = {});
+    Result<std::shared_ptr<PieceQueue>> read(const std::string &path, const Requester &by = {});
     /// Another job that produces pieces; it counts as a reader.
-    Result<std::shared_ptr<screen::PieceQueue>> run(std::function<void(screen::PieceQueue &)> job,
-                                                    const screen::Requester &by = {}) {
+    Result<std::shared_ptr<PieceQueue>> run(std::function<void(PieceQueue &)> job, const Requester &by = {}) {
         return begin([job = std::move(job)](Reader &reader) { job(*reader.pieces); }, by);
     }
     /// Times of the program's moves, from the planner.
-    Result<std::shared_ptr<screen::PieceQueue>> read_times(const std::string &path,
-                                                           const screen::TimeOverrides &overrides,
-                                                           const screen::Requester &by = {});
+    Result<std::shared_ptr<PieceQueue>> read_times(const std::string &path, const TimeOverrides &overrides,
+                                                   const Requester &by = {});
     /// Requests all readers to end.
     void cancel();
 
   private:
     struct Reader {
-        std::shared_ptr<screen::PieceQueue> pieces;
-        screen::Requester by;
+        std::shared_ptr<PieceQueue> pieces;
+        Requester by;
         std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
         std::atomic<bool> isOver{false};
         bool late = false;  ///< [its thread] a limit has ended it
         std::thread thread;
     };
-    Result<> check_count(const screen::Requester &by) const;
-    Result<std::shared_ptr<screen::PieceQueue>> begin(std::function<void(Reader &)> job,
-                                                      const screen::Requester &by);
+    Result<> check_count(const Requester &by) const;
+    Result<std::shared_ptr<PieceQueue>> begin(std::function<void(Reader &)> job, const Requester &by);
     /// True if it has no receiver, or a limit is exceeded. [its thread]
     bool isToEnd(Reader &reader) const;
     std::string late_text(const std::string &path) const;
     void read_all(Reader &reader, const std::string &path) const;
-    void time_all(Reader &reader, const std::string &path, const screen::TimeOverrides &overrides) const;
+    void time_all(Reader &reader, const std::string &path, const TimeOverrides &overrides) const;
 
     struct Hearer {
         std::function<void(std::span<const gcode::PreviewEvent>, const gcode::Preview &)> events;
@@ -82,9 +78,9 @@ class PathReaders {
     std::uint32_t interpret(Reader &reader, const std::string &path, const Hearer &hearer) const;
 
     const machine::LoadedConfig &loaded_;
-    screen::PathLook look_;
+    PathLook look_;
     Limits limits_;
     std::list<Reader> readers_;
 };
 
-}  // namespace mw::programs
+}  // namespace mw::screen

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "programs/screen/ui_dialogs.hh"
+#include "clients/screen/hal/dialog_facts.hh"
 
 #include <algorithm>
 #include <optional>
 
 #include "base/text.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 namespace {
 
 using ini::IniEntry;
-using screen::DialogFacts;
-using screen::DialogKind;
 
 /// Parses "okdialog status"; nothing if a word is unknown.
 std::optional<DialogKind> parse_kind(const std::string &text) {
@@ -140,4 +138,4 @@ std::vector<DialogFacts> dialog_facts(const ini::IniFile &ini, diagnostics::Sink
     return all;
 }
 
-}  // namespace mw::programs
+}  // namespace mw::screen

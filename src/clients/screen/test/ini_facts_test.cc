@@ -14,16 +14,16 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.hh"
-#include "programs/run/ui_filter.hh"
-#include "programs/screen/ui_facts.hh"
-#include "programs/screen/ui_path.hh"
+#include "clients/screen/assembly/ini_facts.hh"
+#include "clients/screen/files/filter.hh"
+#include "clients/screen/path/path_readers.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::pair<double, bool>> values(const std::vector<screen::Increment> &increments) {
+std::vector<std::pair<double, bool>> values(const std::vector<Increment> &increments) {
     std::vector<std::pair<double, bool>> out;
     for (const auto &one : increments) {
         out.emplace_back(one.value, one.isAngular);
@@ -169,7 +169,6 @@ TEST_F(UiMachine, ARotaryAxisHasSpeedsAndSteps) {
 }
 
 TEST_F(UiMachine, TheKindOfMachineAndItsGeometryAreSaid) {
-    using screen::MachineKind;
     const auto facts = [this](const char *machine, const char *display) {
         return machine_facts(*load(machine, display), sink_);
     };
@@ -189,13 +188,13 @@ TEST_F(UiMachine, TheKindOfMachineAndItsGeometryAreSaid) {
 }
 
 /// All pieces until the end.
-std::string all_of(screen::PieceQueue &pieces) {
+std::string all_of(PieceQueue &pieces) {
     std::string bytes, piece;
     while (true) {
         switch (pieces.take(piece, [] {})) {
-        case screen::PieceQueue::State::PIECE: bytes += piece; break;
-        case screen::PieceQueue::State::LATER: std::this_thread::yield(); break;
-        case screen::PieceQueue::State::END: return bytes;
+        case PieceQueue::State::PIECE: bytes += piece; break;
+        case PieceQueue::State::LATER: std::this_thread::yield(); break;
+        case PieceQueue::State::END: return bytes;
         }
     }
 }
@@ -300,13 +299,12 @@ TEST_F(UiMachine, AProgramWithErrorsHasNoTime) {
 /// Output of a filter with this shell script, and the program that it has created.
 class Filter : public UiMachine {
   protected:
-    std::string run(const std::string &script,
-                    const std::function<void(screen::PieceQueue &)> &meanwhile = {}) {
+    std::string run(const std::string &script, const std::function<void(PieceQueue &)> &meanwhile = {}) {
         const std::string path = (folder_ / "filter").string();
         std::ofstream(path) << "#!/bin/sh\n" << script;
         fs::permissions(path, fs::perms::owner_all);
         std::ofstream(folder_ / "it's a picture.png") << "pixels";
-        screen::PieceQueue pieces;
+        PieceQueue pieces;
         const FilterRun filter{"./filter -x", folder_.string(), (folder_ / "it's a picture.png").string(),
                                made_};
         std::thread other([&] {
@@ -356,7 +354,7 @@ TEST_F(Filter, WhatGoesWrongIsToldAndLeavesTheProgramOfBefore) {
 TEST_F(Filter, EndsWithAllThatItHasStartedWhenNobodyWaits) {
     const std::string mark = (folder_ / "pid").string();
     run("sh -c 'echo $$ > pid; trap \"\" TERM; while :; do sleep 0.1; done' &\nwait\n",
-        [&](screen::PieceQueue &pieces) {
+        [&](PieceQueue &pieces) {
             while (read_file(mark).value_or("").empty()) {
                 std::this_thread::yield();
             }
@@ -397,20 +395,20 @@ TEST_F(UiMachine, ReadersEndWhenNobodyReads) {
     const std::string path = (folder_ / "long.ngc").string();
     std::ofstream(path) << "G21 F1000\no1 repeat [10000000]\nG1 X1\nG1 X0\no1 endrepeat\nM2\n";
     PathReaders readers(*loaded, {});
-    const auto read = [&](const std::string &address, screen::Role role) {
+    const auto read = [&](const std::string &address, Role role) {
         return readers.read(path, {address, role}).has_value();
     };
     for (const std::string viewer : {"10.0.0.1", "10.0.0.2"}) {
         for (std::size_t i = 0; i < PathReaders::MOST_OF_VIEWER; ++i) {
-            EXPECT_TRUE(read(viewer, screen::Role::VIEW));
+            EXPECT_TRUE(read(viewer, Role::VIEW));
         }
-        EXPECT_FALSE(read(viewer, screen::Role::VIEW)) << "one client takes no more";
+        EXPECT_FALSE(read(viewer, Role::VIEW)) << "one client takes no more";
     }
-    EXPECT_FALSE(read("10.0.0.3", screen::Role::VIEW)) << "viewers leave places for operators";
+    EXPECT_FALSE(read("10.0.0.3", Role::VIEW)) << "viewers leave places for operators";
     for (std::size_t i = 0; i < PathReaders::MOST_OF_CLIENT; ++i) {
-        EXPECT_TRUE(read("10.0.0.1", screen::Role::OPERATE));
+        EXPECT_TRUE(read("10.0.0.1", Role::OPERATE));
     }
-    EXPECT_FALSE(read("10.0.0.4", screen::Role::OPERATE)) << "as many as can be in all";
+    EXPECT_FALSE(read("10.0.0.4", Role::OPERATE)) << "as many as can be in all";
 }  // the destructor ends them
 
 TEST_F(UiMachine, ALongMoveEndsWhenNobodyReadsOrALimitIsExceeded) {
@@ -431,4 +429,4 @@ TEST_F(UiMachine, ALongMoveEndsWhenNobodyReadsOrALimitIsExceeded) {
 }  // the destructor ends it
 
 }  // namespace
-}  // namespace mw::programs
+}  // namespace mw::screen

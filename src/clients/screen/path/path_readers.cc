@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "programs/screen/ui_path.hh"
+#include "clients/screen/path/path_readers.hh"
 
 #include <fcntl.h>
 #include <time.h>
@@ -20,7 +20,7 @@
 #include "machine/config/unscripted.hh"
 #include "machine/tools/tool_data.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 namespace {
 
 constexpr double MM_PER_INCH = 25.4;
@@ -30,7 +30,7 @@ constexpr std::size_t EVENTS_PER_CHECK = 64;
 bool hasDescriptors() {
     constexpr int MOST_OF_A_PROGRAM = 16;
     const int fd = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    const bool free = fd >= 0 && !screen::isReserved(fd + MOST_OF_A_PROGRAM);
+    const bool free = fd >= 0 && !isReserved(fd + MOST_OF_A_PROGRAM);
     if (fd >= 0) {
         ::close(fd);
     }
@@ -52,14 +52,12 @@ void PathReaders::cancel() {
     }
 }
 
-Result<std::shared_ptr<screen::PieceQueue>> PathReaders::read(const std::string &path,
-                                                              const screen::Requester &by) {
+Result<std::shared_ptr<PieceQueue>> PathReaders::read(const std::string &path, const Requester &by) {
     return begin([this, path](Reader &reader) { read_all(reader, path); }, by);
 }
 
-Result<std::shared_ptr<screen::PieceQueue>> PathReaders::read_times(const std::string &path,
-                                                                    const screen::TimeOverrides &overrides,
-                                                                    const screen::Requester &by) {
+Result<std::shared_ptr<PieceQueue>>
+PathReaders::read_times(const std::string &path, const TimeOverrides &overrides, const Requester &by) {
     return begin([this, path, overrides](Reader &reader) { time_all(reader, path, overrides); }, by);
 }
 
@@ -78,11 +76,11 @@ std::string PathReaders::late_text(const std::string &path) const {
                        path, limits_.time_s, limits_.cpu_s);
 }
 
-Result<> PathReaders::check_count(const screen::Requester &by) const {
-    const bool is_viewer = by.role <= screen::Role::VIEW;
+Result<> PathReaders::check_count(const Requester &by) const {
+    const bool is_viewer = by.role <= Role::VIEW;
     std::size_t of_client = 0, of_viewers = 0;
     for (const Reader &reader : readers_) {
-        const bool of_viewer = reader.by.role <= screen::Role::VIEW;
+        const bool of_viewer = reader.by.role <= Role::VIEW;
         of_viewers += of_viewer ? 1 : 0;
         of_client += of_viewer == is_viewer && reader.by.address == by.address ? 1 : 0;
     }
@@ -95,8 +93,8 @@ Result<> PathReaders::check_count(const screen::Requester &by) const {
                : fail(fmt::format("{} programs are being read for this computer: try again later", most));
 }
 
-Result<std::shared_ptr<screen::PieceQueue>> PathReaders::begin(std::function<void(Reader &)> job,
-                                                               const screen::Requester &by) {
+Result<std::shared_ptr<PieceQueue>> PathReaders::begin(std::function<void(Reader &)> job,
+                                                       const Requester &by) {
     readers_.remove_if([](Reader &reader) {
         const bool isOver = reader.isOver.load(std::memory_order_acquire);
         if (isOver) {
@@ -109,7 +107,7 @@ Result<std::shared_ptr<screen::PieceQueue>> PathReaders::begin(std::function<voi
     }
     Reader &reader = readers_.emplace_back();
     reader.by = by;
-    reader.pieces = std::make_shared<screen::PieceQueue>();
+    reader.pieces = std::make_shared<PieceQueue>();
     reader.thread = std::thread([&reader, job = std::move(job)] {
         lower_priority();
         job(reader);
@@ -157,8 +155,8 @@ std::uint32_t PathReaders::interpret(Reader &reader, const std::string &path, co
 }
 
 void PathReaders::read_all(Reader &reader, const std::string &path) const {
-    screen::PathChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
-                              loaded_.machine.metric ? 1 : MM_PER_INCH, look_);
+    PathChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); },
+                      loaded_.machine.metric ? 1 : MM_PER_INCH, look_);
     const std::uint32_t line =
         interpret(reader, path,
                   {[&](std::span<const gcode::PreviewEvent> events, const gcode::Preview &) {
@@ -174,12 +172,11 @@ void PathReaders::read_all(Reader &reader, const std::string &path) const {
 }
 
 /// Counts the same points as the path.
-void PathReaders::time_all(Reader &reader, const std::string &path,
-                           const screen::TimeOverrides &overrides) const {
+void PathReaders::time_all(Reader &reader, const std::string &path, const TimeOverrides &overrides) const {
     constexpr std::size_t SLOWEST = 30;
-    screen::TimeChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); });
-    screen::PathChunks counted([](const std::string &) { return true; },
-                               loaded_.machine.metric ? 1 : MM_PER_INCH, look_);
+    TimeChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); });
+    PathChunks counted([](const std::string &) { return true; }, loaded_.machine.metric ? 1 : MM_PER_INCH,
+                       look_);
     machine::TimeEstimate estimate(loaded_.machine, {overrides.feed, overrides.rapid, overrides.max_velocity},
                                    [&](const machine::TimedMove &move) {
                                        chunks.move(static_cast<std::uint32_t>(move.id),
@@ -217,8 +214,7 @@ void PathReaders::time_all(Reader &reader, const std::string &path,
         chunks.error(late_text(path));
         return;
     }
-    screen::TimeSum sum{figures.total_s, figures.cutting_s,  figures.rapid_s,
-                        figures.dwell_s, figures.isComplete, {}};
+    TimeSum sum{figures.total_s, figures.cutting_s, figures.rapid_s, figures.dwell_s, figures.isComplete, {}};
     for (const machine::SlowPlace &place : figures.slowest) {
         sum.slowest.push_back({std::filesystem::path(place.file).filename().string(), place.file == path,
                                place.line, place.lost_s, place.limit});
@@ -226,4 +222,4 @@ void PathReaders::time_all(Reader &reader, const std::string &path,
     chunks.end(sum);
 }
 
-}  // namespace mw::programs
+}  // namespace mw::screen

@@ -9,7 +9,7 @@
 #include "base/result.hh"
 #include "clients/screen/http/piece_queue.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 
 /// Commands by file name extension, in lower case with the dot.
 std::map<std::string, std::string> filters_of(const ini::IniFile &ini);
@@ -26,6 +26,6 @@ struct FilterRun {
 
 /// Runs the filter to its end, or until there is no reader. `pieces` receives lines of JSON: {"progress": 40}
 /// for the filter's FILTER_PROGRESS=40, then {"made": "/path"} or {"error": "..."}. Blocks.
-void run_filter(const FilterRun &run, screen::PieceQueue &pieces);
+void run_filter(const FilterRun &run, PieceQueue &pieces);
 
-}  // namespace mw::programs
+}  // namespace mw::screen

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "programs/screen/ui_door.hh"
+#include "clients/screen/access/remote_access.hh"
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
@@ -16,11 +16,8 @@
 
 #include "base/text.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 namespace {
-
-using screen::Access;
-using screen::Protection;
 
 constexpr int PRESET_PORT = 8851;
 
@@ -108,10 +105,10 @@ Result<std::string> secrets_folder() {
     return std::string(home) + "/.config/millwright/screen";
 }
 
-Result<std::optional<screen::RemoteDoor>> remote_door(const DoorWords &words, const std::string &folder) {
+Result<std::optional<RemoteDoor>> remote_door(const DoorWords &words, const std::string &folder) {
     if (words.listen.empty()) {
         return words.names.empty() && words.unprotected.empty()
-                   ? Result<std::optional<screen::RemoteDoor>>(std::nullopt)
+                   ? Result<std::optional<RemoteDoor>>(std::nullopt)
                    : fail("--name and --unprotected require --listen ADDRESS");
     }
     const auto place = parse_place(words.listen);
@@ -123,13 +120,13 @@ Result<std::optional<screen::RemoteDoor>> remote_door(const DoorWords &words, co
         names.push_back(to_lower(name));
     }
     if (!words.unprotected.empty()) {
-        const auto role = screen::role_of_name(words.unprotected);
+        const auto role = role_of_name(words.unprotected);
         return role.has_value()
-                   ? Result<std::optional<screen::RemoteDoor>>(screen::RemoteDoor{
-                         place->address, place->port, names, Access(Protection::NONE, *role), {}})
+                   ? Result<std::optional<RemoteDoor>>(
+                         RemoteDoor{place->address, place->port, names, Access(Protection::NONE, *role), {}})
                    : fail("--unprotected: the role of all clients is view, operate or configure");
     }
-    auto tokens = screen::Tokens::read_or_make(folder + "/tokens");
+    auto tokens = Tokens::read_or_make(folder + "/tokens");
     if (!tokens.has_value()) {
         return std::unexpected(tokens.error());
     }
@@ -137,24 +134,24 @@ Result<std::optional<screen::RemoteDoor>> remote_door(const DoorWords &words, co
     const auto addresses =
         isEverywhere(place->address) ? own_addresses() : std::vector<std::string>{place->address};
     certified.insert(certified.end(), addresses.begin(), addresses.end());
-    auto certificate = screen::read_or_make_certificate(folder, certified);
+    auto certificate = read_or_make_certificate(folder, certified);
     if (!certificate.has_value()) {
         return std::unexpected(certificate.error());
     }
-    return screen::RemoteDoor{place->address, place->port, names, Access(std::move(*tokens)),
-                              std::move(*certificate)};
+    return RemoteDoor{place->address, place->port, names, Access(std::move(*tokens)),
+                      std::move(*certificate)};
 }
 
-screen::Tokens local_tokens(const std::string &folder, diagnostics::Sink &sink) {
+Tokens local_tokens(const std::string &folder, diagnostics::Sink &sink) {
     if (folder.empty()) {
         return {};
     }
-    auto tokens = screen::Tokens::read_or_make(folder + "/tokens");
+    auto tokens = Tokens::read_or_make(folder + "/tokens");
     if (!tokens.has_value()) {
         sink.warning(fmt::format("Other users of this computer cannot sign in to the screen: {}",
                                  tokens.error().str()));
     }
-    return tokens.value_or(screen::Tokens());
+    return tokens.value_or(Tokens());
 }
 
 void report_unknown(const std::string &why, diagnostics::Sink &sink) {
@@ -175,7 +172,7 @@ std::string status_note(int port, const std::string &folder) {
         port, folder);
 }
 
-std::string door_text(const screen::RemoteDoor &door, int port, const std::string &folder) {
+std::string door_text(const RemoteDoor &door, int port, const std::string &folder) {
     std::string host = door.address;
     if (isEverywhere(host)) {
         const auto addresses = own_addresses();
@@ -194,4 +191,4 @@ std::string door_text(const screen::RemoteDoor &door, int port, const std::strin
                        host, port, folder, door.tls->fingerprint);
 }
 
-}  // namespace mw::programs
+}  // namespace mw::screen

@@ -8,10 +8,10 @@
 #include "base/ini/ini_file.hh"
 #include "clients/screen/hal/dialogs.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 
 /// The messages in order. A message without text, type or pin is reported to `sink` as an error with its
 /// position, and omitted.
-std::vector<screen::DialogFacts> dialog_facts(const ini::IniFile &ini, diagnostics::Sink &sink);
+std::vector<DialogFacts> dialog_facts(const ini::IniFile &ini, diagnostics::Sink &sink);
 
-}  // namespace mw::programs
+}  // namespace mw::screen

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "programs/screen/ui_facts.hh"
+#include "clients/screen/assembly/ini_facts.hh"
 
 #include <algorithm>
 #include <array>
@@ -10,14 +10,12 @@
 
 #include "base/ini/ini_value.hh"
 #include "base/text.hh"
-#include "programs/run/ui_filter.hh"
-#include "programs/screen/ui_tabs.hh"
-#include "programs/start/program_certifier.hh"
+#include "clients/screen/facts/tabs.hh"
+#include "clients/screen/files/filter.hh"
+#include "machine/analysis/motion_certificate.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 namespace {
-
-using screen::Increment;
 
 constexpr double MM_PER_INCH = 25.4;
 
@@ -199,15 +197,14 @@ JogSpeeds jog_speeds(const machine::LoadedConfig &loaded, bool is_angular, diagn
 }
 
 /// [DISPLAY] keys with the number of the spindle take precedence over those without.
-screen::SpindleFacts spindle_facts(const machine::LoadedConfig &loaded, int spindle,
-                                   diagnostics::Sink &sink) {
+SpindleFacts spindle_facts(const machine::LoadedConfig &loaded, int spindle, diagnostics::Sink &sink) {
     const std::string number = std::to_string(spindle), section = "SPINDLE_" + number;
     const auto value = [&](const std::string &first, const std::string &last) -> std::optional<double> {
         const std::string own = first + "_SPINDLE_" + number + '_' + last, all = first + "_SPINDLE_" + last;
         return first_of(loaded.ini, {{"DISPLAY", own.c_str()}, {"DISPLAY", all.c_str()}}, sink,
                         Least::FROM_0);
     };
-    screen::SpindleFacts facts;
+    SpindleFacts facts;
     facts.min_override = value("MIN", "OVERRIDE").value_or(loaded.machine.panel.min_spindle_override);
     facts.max_override = value("MAX", "OVERRIDE").value_or(loaded.machine.panel.max_spindle_override);
     facts.min_speed = value("MIN", "SPEED").value_or(0);
@@ -236,8 +233,7 @@ bool isYes(const ini::IniFile &ini, const char *key) {
 }
 
 /// [DISPLAY]LATHE, BACK_TOOL_LATHE and FOAM, or the same word as MACHINE_TYPE_HINT.
-screen::MachineKind kind_of(const ini::IniFile &ini, diagnostics::Sink &sink) {
-    using screen::MachineKind;
+MachineKind kind_of(const ini::IniFile &ini, diagnostics::Sink &sink) {
     const ini::IniEntry *hint = ini.find("DISPLAY", "MACHINE_TYPE_HINT");
     const std::string word = hint == nullptr ? "" : to_lower(trim(hint->value));
     if (isYes(ini, "BACK_TOOL_LATHE") || word == "back_tool_lathe") {
@@ -259,11 +255,11 @@ screen::MachineKind kind_of(const ini::IniFile &ini, diagnostics::Sink &sink) {
 
 std::string geometry_of(const ini::IniFile &ini, const std::string &axes, diagnostics::Sink &sink) {
     const ini::IniEntry *entry = ini.find("DISPLAY", "GEOMETRY");
-    const std::string preset(screen::PathGeometry::PRESET);
+    const std::string preset(PathGeometry::PRESET);
     if (entry == nullptr || trim(entry->value).empty()) {
         return preset;
     }
-    const auto parsed = screen::PathGeometry::parse(entry->value, axes);
+    const auto parsed = PathGeometry::parse(entry->value, axes);
     if (!parsed.has_value()) {
         sink.warning("[DISPLAY]" + parsed.error().message + ": paths are drawn as by " + preset,
                      entry->place);
@@ -282,7 +278,7 @@ double foam_height(const ini::IniFile &ini, const char *key, double preset, diag
     return value.value_or(preset);
 }
 
-screen::ScreenFiles files_of(const ini::IniFile &ini) {
+ScreenFiles files_of(const ini::IniFile &ini) {
     const auto path = [&ini](const char *key) {
         constexpr std::string_view FOLDER = "WORKINGFOLDER/";  // LinuxCNC's name
         const std::string named = text_of(ini, "DISPLAY", key);
@@ -315,14 +311,14 @@ double status_period_s(const ini::IniFile &ini, diagnostics::Sink &sink) {
     return std::clamp(given >= 1 ? given / MS_PER_S : given, LEAST_S, MOST_S);
 }
 
-screen::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnostics::Sink &sink) {
+MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnostics::Sink &sink) {
     const ini::IniFile &ini = loaded.ini;
     const machine::MachineConfig &machine = loaded.machine;
-    screen::MachineFacts facts;
+    MachineFacts facts;
     facts.name = machine.name;
     facts.title = text_of(ini, "DISPLAY", "TITLE");
     facts.files = files_of(ini);
-    facts.files.certificate = last_certificate_file(machine);
+    facts.files.certificate = machine::last_certificate_file(machine);
     facts.tabs = tabs_of(ini, sink);
     bool has_rotary = false;
     for (int axis = 0; axis < geometry::AXIS_COUNT; ++axis) {
@@ -376,15 +372,15 @@ screen::MachineFacts machine_facts(const machine::LoadedConfig &loaded, diagnost
     return facts;
 }
 
-screen::PathLook path_look(const screen::MachineFacts &facts) {
-    screen::PathLook look;
-    if (const auto geometry = screen::PathGeometry::parse(facts.look.geometry, facts.axes)) {
+PathLook path_look(const MachineFacts &facts) {
+    PathLook look;
+    if (const auto geometry = PathGeometry::parse(facts.look.geometry, facts.axes)) {
         look.geometry = *geometry;
     }
-    if (facts.look.kind == screen::MachineKind::FOAM) {
+    if (facts.look.kind == MachineKind::FOAM) {
         look.foam = {facts.look.foam_z, facts.look.foam_w};
     }
     return look;
 }
 
-}  // namespace mw::programs
+}  // namespace mw::screen

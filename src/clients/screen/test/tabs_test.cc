@@ -8,13 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.hh"
-#include "programs/screen/ui_tabs.hh"
+#include "clients/screen/facts/tabs.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 namespace {
 
 namespace fs = std::filesystem;
-using screen::Tab;
 
 class UiTabs : public testing::Test {
   protected:
@@ -84,4 +83,4 @@ TEST_F(UiTabs, AFailureIsNotedAndTheNextIsRun) {
 }
 
 }  // namespace
-}  // namespace mw::programs
+}  // namespace mw::screen

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "programs/screen/ui_dialogs.hh"
-#include "programs/screen/ui_door.hh"
+#include "clients/screen/access/remote_access.hh"
+#include "clients/screen/hal/dialog_facts.hh"
 
-namespace mw::programs {
+namespace mw::screen {
 namespace {
 
 namespace fs = std::filesystem;
@@ -47,8 +47,8 @@ TEST_F(UiDoor, AddressesAndPortsAreReadAndTlsIsTheRule) {
         EXPECT_EQ((*door)->port, row.port);
         EXPECT_EQ((*door)->names.back(), "mill");
         EXPECT_TRUE((*door)->tls.has_value());
-        EXPECT_EQ((*door)->access.protection(), screen::Protection::TLS);
-        EXPECT_EQ((*door)->access.role_of({}, 1), screen::Role::NOBODY);
+        EXPECT_EQ((*door)->access.protection(), Protection::TLS);
+        EXPECT_EQ((*door)->access.role_of({}, 1), Role::NOBODY);
     }
     for (const char *bad : {"1.2.3.4:x", "1.2.3.4:70000", "[::1", "[::1]x"}) {
         EXPECT_NE(failure({.listen = bad, .names = {}, .unprotected = ""}), "") << bad;
@@ -59,13 +59,13 @@ TEST_F(UiDoor, WithoutProtectionTheRoleIsNamed) {
     const auto door = remote_door({.listen = "0.0.0.0", .names = {}, .unprotected = "view"}, folder);
     ASSERT_TRUE(door.has_value());
     EXPECT_FALSE((*door)->tls.has_value());
-    EXPECT_EQ((*door)->access.role_of({}, 1), screen::Role::VIEW);
+    EXPECT_EQ((*door)->access.role_of({}, 1), Role::VIEW);
     EXPECT_NE(door_text(**door, 8851, folder).find("WITHOUT PROTECTION"), std::string::npos);
     EXPECT_NE(failure({.listen = "0.0.0.0", .names = {}, .unprotected = "boss"}), "");
     EXPECT_FALSE(fs::exists(folder));
 }
 
-std::vector<screen::DialogFacts> facts_of(const std::string &display, std::vector<std::string> &told) {
+std::vector<DialogFacts> facts_of(const std::string &display, std::vector<std::string> &told) {
     diagnostics::Sink sink([&told](const diagnostics::Diagnostic &one) { told.push_back(one.str()); });
     const auto ini = ini::IniFile::parse("[DISPLAY]\n" + display, "m.ini", sink);
     return dialog_facts(ini, sink);
@@ -106,4 +106,4 @@ TEST(UiDialogs, WhatIsWrongIsToldWithItsLine) {
 }
 
 }  // namespace
-}  // namespace mw::programs
+}  // namespace mw::screen
