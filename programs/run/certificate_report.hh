@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/result.hh"
-#include "machine/analysis/motion_certificate.hh"
+#include "machine/certificate/motion_certificate.hh"
 #include "machine/config/machine_config.hh"
 
 namespace mw::programs {

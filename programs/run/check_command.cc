@@ -8,9 +8,10 @@
 #include "base/language/language.hh"
 #include "base/options/command_line.hh"
 #include "base/stop_signals.hh"
-#include "machine/analysis/program_check.hh"
+#include "gcode/analysis/program_check.hh"
 #include "machine/config/ini_parameters.hh"
 #include "machine/config/loaded_config.hh"
+#include "machine/config/program_analysis.hh"
 #include "machine/tools/tool_data.hh"
 #include "programs/command_words.hh"
 #include "programs/commands.hh"
@@ -22,7 +23,7 @@ namespace mw::programs {
 namespace {
 
 void print_result(const std::string &program, const machine::MachineConfig &machine,
-                  const machine::CheckResult &result) {
+                  const gcode::CheckResult &result) {
     const char *unit = machine.metric ? "mm" : "in";
     fmt::print("{}: {} blocks, {} moves, cutting {:.3f} {}, rapid {:.3f} {}\n", program, result.blocks,
                result.moves, result.cutting_length, unit, result.rapid_length, unit);
@@ -60,16 +61,16 @@ int check_loaded(const CheckWords &words, const machine::LoadedConfig &loaded, g
                  diagnostics::Sink &sink) {
     machine::IniParameters values(loaded.ini, nullptr);
     ProgressLine progress;
-    machine::PathPoints points;
-    machine::CheckOptions check;
+    gcode::PathPoints points;
+    gcode::CheckOptions check;
     check.statements = words.statements();
     check.points = words.plot.empty() ? nullptr : &points;
     check.progress = [&progress](const gcode::PreviewProgress &now) {
         progress.show(now);
         return stop_signal == 0;
     };
-    const machine::CheckResult result =
-        machine::check_program(loaded.machine, words.program, tools, values, sink, check);
+    const gcode::CheckResult result = gcode::check_program(machine::checked_machine(loaded.machine),
+                                                           words.program, {tools, values}, sink, check);
     progress.clear();
     if (result.cancelled) {
         sink.error("stopped by " + stop_signal_name());

@@ -12,7 +12,7 @@
 namespace mw::programs {
 namespace {
 
-using machine::PathPoint;
+using gcode::PathPoint;
 
 constexpr double WIDTH = 1400, HEIGHT = 760, MARGIN = 60, TOP = 70;
 

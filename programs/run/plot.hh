@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/result.hh"
-#include "machine/analysis/path_points.hh"
+#include "gcode/analysis/path_points.hh"
 #include "machine/config/machine_config.hh"
 
 namespace mw::programs {
@@ -14,7 +14,7 @@ namespace mw::programs {
 /// Writes `path` (.png or .svg by its extension). A mill is drawn from above, with holes marked, and in
 /// perspective; a lathe (no Y, or [DISPLAY]LATHE) with Z to the right and X upwards, with the centre line.
 /// Machine coordinates.
-Result<> plot_path(const std::vector<machine::PathPoint> &points, const machine::MachineConfig &machine,
+Result<> plot_path(const std::vector<gcode::PathPoint> &points, const machine::MachineConfig &machine,
                    const std::string &program, const std::string &path);
 
 /// Checks for errors of plot_path() in advance.

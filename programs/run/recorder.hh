@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "machine/analysis/motion_certificate.hh"
-#include "machine/analysis/path_monitor.hh"
 #include "machine/assembly/machine.hh"
+#include "machine/certificate/motion_certificate.hh"
+#include "machine/certificate/path_monitor.hh"
 #include "programs/run/trace_writer.hh"
 
 namespace mw::programs {

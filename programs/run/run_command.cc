@@ -188,7 +188,7 @@ class Run {
             static_cast<void>((*tools)->load_spindle(std::max(0, (*tools)->index_of_tool(tool))));
         }
         machine::IniParameters values(loaded_.ini, nullptr);
-        machine::PathPoints points;
+        gcode::PathPoints points;
         diagnostics::Sink unheard;
         StartCheckOptions options;
         options.wants_time = words_.estimated;
@@ -256,7 +256,7 @@ class Run {
         return status.has_value() ? finished : status;
     }
 
-    bool draw(const std::vector<machine::PathPoint> &points) {
+    bool draw(const std::vector<gcode::PathPoint> &points) {
         if (words_.plot.empty()) {
             return true;
         }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/stop_signals.hh"
+#include "machine/config/program_analysis.hh"
 #include "programs/run/progress_line.hh"
 
 namespace mw::programs {
@@ -52,7 +53,7 @@ StartCheck check_before_start(const machine::MachineConfig &machine, const std::
     Judge judge(sink);
     ProgressLine progress;
     diagnostics::Sink found([&judge](const diagnostics::Diagnostic &one) { judge.take(one); });
-    machine::CheckOptions check;
+    gcode::CheckOptions check;
     check.statements = 0;  // a program may be endless; other limits end the check
     check.block_delete_on = options.block_delete_on;
     check.progress = [&](const gcode::PreviewProgress &now) {
@@ -66,7 +67,8 @@ StartCheck check_before_start(const machine::MachineConfig &machine, const std::
         return options.wants_time && seconds() < SHARE_FOR_TIMES * options.most_seconds;
     };
     check.points = options.points;
-    const machine::CheckResult result = machine::check_program(machine, program, tools, values, found, check);
+    const gcode::CheckResult result =
+        gcode::check_program(machine::checked_machine(machine), program, {tools, values}, found, check);
     progress.clear();
     return {judge.hasErrors(), !result.cancelled, result.blocks, result.time};
 }

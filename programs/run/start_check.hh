@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/diagnostics/sink.hh"
-#include "machine/analysis/program_check.hh"
+#include "gcode/analysis/program_check.hh"
 
 namespace mw::programs {
 
@@ -16,14 +16,14 @@ struct StartCheckOptions {
     std::uint64_t most_blocks = 10000000;
     bool wants_time = true;  ///< calculate the planner's time, if enough time for reading remains
     bool block_delete_on = true;
-    machine::PathPoints *points = nullptr;  ///< receives the path
+    gcode::PathPoints *points = nullptr;  ///< receives the path
 };
 
 struct StartCheck {
     bool isRefused = false;  ///< the errors are in the sink
     bool whole = false;      ///< false: a limit or a signal has ended the check
     std::uint64_t blocks = 0;
-    std::optional<machine::TimeFigures> time;
+    std::optional<gcode::TimeFigures> time;
 };
 
 /// Interprets the program for the machine after homing, without Python and user M codes. An error rejects the

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "machine/analysis/path_monitor.hh"
 #include "machine/assembly/machine.hh"
+#include "machine/certificate/path_monitor.hh"
 #include "programs/run/run_session.hh"
 #include "programs/run/start_check.hh"
 

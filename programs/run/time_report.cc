@@ -14,7 +14,7 @@ std::string time_text(double seconds) {
 
 }  // namespace
 
-void print_times(const machine::TimeFigures &time) {
+void print_times(const gcode::TimeFigures &time) {
     fmt::print("  time {}: cutting {}, rapid {}, dwell {}\n", time_text(time.total_s),
                time_text(time.cutting_s), time_text(time.rapid_s), time_text(time.dwell_s));
     if (!time.isComplete) {
@@ -28,7 +28,7 @@ void print_times(const machine::TimeFigures &time) {
             fmt::print("  section {}: {}\n", section.empty() ? "(none)" : section, time_text(seconds));
         }
     }
-    for (const machine::SlowPlace &place : time.slowest) {
+    for (const gcode::SlowPlace &place : time.slowest) {
         fmt::print("  {}:{}: {} more than at its feed, bound by {}\n", place.file, place.line,
                    time_text(place.lost_s), place.limit);
     }

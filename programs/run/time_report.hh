@@ -2,11 +2,11 @@
 // A time estimate as text for a person.
 #pragma once
 
-#include "machine/analysis/time_estimate.hh"
+#include "gcode/analysis/time_estimate.hh"
 
 namespace mw::programs {
 
 /// Prints total, tools, sections and the slowest positions to standard output, indented by two blanks.
-void print_times(const machine::TimeFigures &time);
+void print_times(const gcode::TimeFigures &time);
 
 }  // namespace mw::programs

@@ -13,8 +13,8 @@
 #include <variant>
 #include <vector>
 
-#include "machine/analysis/motion_certificate.hh"
 #include "machine/assembly/machine.hh"
+#include "machine/certificate/motion_certificate.hh"
 #include "programs/run/certificate_report.hh"
 
 namespace mw::programs {

@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 
 #include "campaign/session.hh"
-#include "machine/analysis/time_estimate.hh"
+#include "gcode/analysis/time_estimate.hh"
+#include "machine/config/program_analysis.hh"
 #include "tests/support/deviation.hh"
 
 namespace mw::campaign {
@@ -189,7 +190,7 @@ void Session::check_program(const Act &act, const geometry::Pose &from, double t
 }
 
 double Session::estimate(const Act &act, const geometry::Pose &from) const {
-    machine::TimeEstimate time(rig_->config());
+    gcode::TimeEstimate time(machine::timed_machine(rig_->config()));
     time.start(from);
     bool isCutWaiting = false;
     for (const Block &b : act.blocks) {

@@ -29,7 +29,7 @@ LINK = re.compile(r'\]\((?!https?:)([^)#]+)')
 AREAS = (
     ('Commissioning', 'commissioning', ('src/machine/commissioning',)),
     ('Motion and homing', 'motion', ('src/motion', 'src/kinematics')),
-    ('Task: programs, MDI, tools', 'task', ('src/machine/io', 'src/machine/journal', 'src/machine/task', 'src/machine/config', 'src/machine/analysis', 'src/machine/tools', 'src/machine/assembly', 'src/messages')),
+    ('Task: programs, MDI, tools', 'task', ('src/machine/io', 'src/machine/journal', 'src/machine/task', 'src/machine/config', 'src/machine/certificate', 'src/machine/tools', 'src/machine/assembly', 'src/messages')),
     ('G-code', 'gcode', ('src/gcode',)),
     ('HAL', 'hal', ('src/hal/core', 'src/hal/capi', 'src/hal/host', 'src/hal/script', 'drivers')),
     ('INI files', 'ini', ('src/base/ini',)),

@@ -12,7 +12,7 @@
 #include "base/text.hh"
 #include "clients/screen/facts/tabs.hh"
 #include "clients/screen/files/filter.hh"
-#include "machine/analysis/motion_certificate.hh"
+#include "machine/certificate/motion_certificate.hh"
 
 namespace mw::screen {
 namespace {

@@ -14,10 +14,10 @@
 #include "clients/screen/path/path_chunks.hh"
 #include "clients/screen/path/time_chunks.hh"
 #include "clients/screen/server/descriptors.hh"
-#include "machine/analysis/program_check.hh"
-#include "machine/analysis/time_estimate.hh"
+#include "gcode/analysis/time_estimate.hh"
+#include "gcode/analysis/unscripted.hh"
 #include "machine/config/ini_parameters.hh"
-#include "machine/config/unscripted.hh"
+#include "machine/config/program_analysis.hh"
 #include "machine/tools/tool_data.hh"
 
 namespace mw::screen {
@@ -131,10 +131,10 @@ std::uint32_t PathReaders::interpret(Reader &reader, const std::string &path, co
         return 0;
     }
     machine::IniParameters ini_values(loaded_.ini, nullptr);
-    machine::UnknownHalValues values(ini_values, [] {});
+    gcode::UnknownHalValues values(ini_values, [] {});
     gcode::PreviewMachine stand = machine::preview_stand(loaded_.machine);
     stand.interpreter.make_script_host = []() -> Result<std::unique_ptr<gcode::ScriptHost>> {
-        return std::make_unique<machine::UnscriptedHost>([] {});
+        return std::make_unique<gcode::UnscriptedHost>([] {});
     };
     gcode::PreviewOptions options;
     options.blocks_per_report = 256;
@@ -177,12 +177,12 @@ void PathReaders::time_all(Reader &reader, const std::string &path, const TimeOv
     TimeChunks chunks([&reader](std::string piece) { return reader.pieces->push(std::move(piece)); });
     PathChunks counted([](const std::string &) { return true; }, loaded_.machine.metric ? 1 : MM_PER_INCH,
                        look_);
-    machine::TimeEstimate estimate(loaded_.machine, {overrides.feed, overrides.rapid, overrides.max_velocity},
-                                   [&](const machine::TimedMove &move) {
-                                       chunks.move(static_cast<std::uint32_t>(move.id),
-                                                   static_cast<std::uint32_t>(std::max(move.line, 0)),
-                                                   move.seconds, move.top_velocity);
-                                   });
+    gcode::TimeEstimate estimate(
+        machine::timed_machine(loaded_.machine), {overrides.feed, overrides.rapid, overrides.max_velocity},
+        [&](const gcode::TimedMove &move) {
+            chunks.move(static_cast<std::uint32_t>(move.id),
+                        static_cast<std::uint32_t>(std::max(move.line, 0)), move.seconds, move.top_velocity);
+        });
     estimate.end_when([this, &reader] { return isToEnd(reader); });
     estimate.start(machine::home_position(loaded_.machine));
     bool sound = true;
@@ -209,13 +209,13 @@ void PathReaders::time_all(Reader &reader, const std::string &path, const TimeOv
     if (isToEnd(reader) || !sound) {
         return;  // after an error the course of the program is unknown
     }
-    const machine::TimeFigures &figures = estimate.finish(SLOWEST);
+    const gcode::TimeFigures &figures = estimate.finish(SLOWEST);
     if (isToEnd(reader)) {
         chunks.error(late_text(path));
         return;
     }
     TimeSum sum{figures.total_s, figures.cutting_s, figures.rapid_s, figures.dwell_s, figures.isComplete, {}};
-    for (const machine::SlowPlace &place : figures.slowest) {
+    for (const gcode::SlowPlace &place : figures.slowest) {
         sum.slowest.push_back({std::filesystem::path(place.file).filename().string(), place.file == path,
                                place.line, place.lost_s, place.limit});
     }

@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.hh"
 #include "clients/screen/facts/tabs.hh"
+#include "clients/screen/hal/postgui.hh"
 
 namespace mw::screen {
 namespace {

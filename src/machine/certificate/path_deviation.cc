@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/analysis/path_deviation.hh"
+#include "machine/certificate/path_deviation.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +80,7 @@ PathDeviation::Step PathDeviation::step_to(const Sample &sample, const Pose &nex
     constexpr double SAG = 1.0 / 8;
     const Pose begin = sample.p - last_.p - (last_.p - before_last_);
     const Pose end = next - sample.p - (sample.p - last_.p);
-    return {PieceShape({.start = last_.p, .end = sample.p, .centre = {}, .normal = {}}),
+    return {gcode::PieceShape({.start = last_.p, .end = sample.p, .centre = {}, .normal = {}}),
             {SAG * std::max(geometry::norm_linear(begin), geometry::norm_linear(end)),
              SAG * std::max(geometry::norm_abc(begin), geometry::norm_abc(end))},
             sample.time_ns};
@@ -151,7 +151,7 @@ void PathDeviation::assign(const Sample &sample, const Step &step) {
     commit_common();
 }
 
-Nearest PathDeviation::corner_distance(std::uint64_t number, const Step &step, double from) const {
+gcode::Nearest PathDeviation::corner_distance(std::uint64_t number, const Step &step, double from) const {
     return step.chord.nearest(pieces_[number].shape.piece().end, from, step.sag);
 }
 
@@ -166,10 +166,10 @@ std::optional<PathDeviation::Passing> PathDeviation::pass(const Candidate *befor
         return std::nullopt;
     }
     const Candidate *from = nullptr;
-    Nearest corner;
+    gcode::Nearest corner;
     double least = limit;
     if (passing.has_value()) {
-        const Nearest nearest = corner_distance(number, step, passing->along);
+        const gcode::Nearest nearest = corner_distance(number, step, passing->along);
         if (std::max(passing->candidate.cost, nearest.distance()) <= least) {
             from = &passing->candidate;
             corner = nearest;
@@ -177,7 +177,7 @@ std::optional<PathDeviation::Passing> PathDeviation::pass(const Candidate *befor
         }
     }
     if (before != nullptr) {
-        const Nearest nearest = corner_distance(number, step, 0);
+        const gcode::Nearest nearest = corner_distance(number, step, 0);
         if (std::max(before->cost, nearest.distance()) <= least) {
             from = before;
             corner = nearest;
@@ -194,7 +194,8 @@ std::optional<PathDeviation::Passing> PathDeviation::pass(const Candidate *befor
 }
 
 /// Adds a candidate that passes the corner at the end of the candidate's piece.
-void PathDeviation::add_corner(Candidate &candidate, const Nearest &nearest, std::int64_t time_ns) const {
+void PathDeviation::add_corner(Candidate &candidate, const gcode::Nearest &nearest,
+                               std::int64_t time_ns) const {
     const PathPiece &before = pieces_[candidate.piece];
     const bool isJoined =
         pieces_.isMade(candidate.piece + 1) && pieces_[candidate.piece + 1].start == PieceStart::AT_CORNER;
@@ -211,7 +212,7 @@ void PathDeviation::add_corner(Candidate &candidate, const Nearest &nearest, std
 /// Assigns the sample to the nearest point of the candidate's piece that is not before `from`.
 void PathDeviation::move_to(Candidate &candidate, const Sample &sample, double from) const {
     const PathPiece &here = pieces_[candidate.piece];
-    const Nearest nearest = here.shape.nearest(sample.p, from);
+    const gcode::Nearest nearest = here.shape.nearest(sample.p, from);
     candidate.fraction = nearest.fraction;
     candidate.now = nearest.distance();
     add(candidate, {nearest.linear, nearest.angular, here.tolerance, here.isExact, sample.time_ns,
@@ -273,7 +274,7 @@ void PathDeviation::complete() {
         return;
     }
     const Step step{
-        PieceShape({.start = last_.p, .end = last_.p, .centre = {}, .normal = {}}), {}, last_.time_ns};
+        gcode::PieceShape({.start = last_.p, .end = last_.p, .centre = {}, .normal = {}}), {}, last_.time_ns};
     Candidate shortest;
     shortest.cost = std::numeric_limits<double>::infinity();
     for (Candidate candidate : candidates_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/analysis/motion_certificate.hh"
+#include "machine/certificate/motion_certificate.hh"
 
 #include <algorithm>
 #include <limits>

@@ -8,9 +8,15 @@
 
 #include "base/geometry/move_settings.hh"
 #include "base/geometry/pose.hh"
-#include "machine/analysis/programmed_piece.hh"
+#include "gcode/analysis/programmed_piece.hh"
+#include "motion/interface/path_command.hh"
 
 namespace mw::machine {
+
+/// The move of a path command that begins at `start`; nothing for commands that are not moves. Rigid tapping
+/// returns to its start.
+std::optional<gcode::ProgrammedPiece> programmed_piece(const geometry::Pose &start,
+                                                       const motion::PathBody &body);
 
 /// Source position of a move.
 struct ProgramLine {
@@ -20,7 +26,7 @@ struct ProgramLine {
 
 struct ProgrammedMove {
     std::uint64_t id = 0;  ///< increases from move to move
-    ProgrammedPiece piece;
+    gcode::ProgrammedPiece piece;
     geometry::PathMode mode = geometry::PathMode::BLEND;
     double tolerance = 0;  ///< in BLEND: the maximum distance from the path [machine units, degrees]; 0: none
     ProgramLine source;
@@ -39,7 +45,7 @@ enum class PieceStart : std::uint8_t {
 
 /// A line, or a part of an arc.
 struct PathPiece {
-    PieceShape shape;
+    gcode::PieceShape shape;
     std::uint64_t id = 0;
     double tolerance = 0;  ///< EXACT_TOLERANCE in exact modes
     bool isExact = false, isMeasured = true;

@@ -11,10 +11,18 @@
 #include <vector>
 
 #include "gcode/analysis/preview.hh"
-#include "machine/config/machine_config.hh"
 #include "trajectory/estimator.hh"
 
-namespace mw::machine {
+namespace mw::gcode {
+
+/// The limits of a machine, for times without kinematics: each joint is treated as the axis of its letter.
+struct TimedMachine {
+    trajectory::Limits limits;    ///< of paths
+    geometry::Pose low, high;     ///< soft limits
+    double corner_scale = 0;      ///< for moves that do not set it
+    bool has_jerk_limit = false;  ///< G64 R can select planning with jerk limits
+    double servo_period_s = 0;
+};
 
 struct SlowPlace {
     std::string file;
@@ -51,7 +59,7 @@ class TimeEstimate {
   public:
     /// `watch` is called for each complete move, in order; may be empty.
     using Watch = std::function<void(const TimedMove &)>;
-    explicit TimeEstimate(const MachineConfig &machine, const Overrides &overrides = {}, Watch watch = {});
+    explicit TimeEstimate(const TimedMachine &machine, const Overrides &overrides = {}, Watch watch = {});
 
     /// See trajectory::Estimator::end_when. The estimate is then incomplete.
     void end_when(std::function<bool()> isToEnd) { estimator_->end_when(std::move(isToEnd)); }
@@ -59,9 +67,9 @@ class TimeEstimate {
     /// `section` is the name from Preview::section.
     void set_place(const std::string &file, int line, const std::string &section);
     /// An event of a preview; `id` is returned in TimedMove.
-    void take(const gcode::PreviewEvent &event, std::uint64_t id = 0);
+    void take(const PreviewEvent &event, std::uint64_t id = 0);
     void line(const geometry::Pose &end, const geometry::MoveSettings &settings);
-    void arc(const gcode::ArcMove &move);
+    void arc(const ArcMove &move);
     void dwell(double seconds);
     /// Stops motion at this point: tool changes, stops, probes.
     void stop();
@@ -77,9 +85,9 @@ class TimeEstimate {
 
     Watch watch_;
     std::uint64_t id_ = 0;
-    motion::Settings settings_;
     trajectory::Limits limits_;
-    double corner_scale_;  ///< for moves that do not set it
+    double corner_scale_;
+    bool has_jerk_limit_;
     TimeFigures figures_;
     int tool_ = 0;
     std::vector<std::string> files_;
@@ -91,4 +99,4 @@ class TimeEstimate {
     std::map<std::pair<std::uint32_t, int>, SlowPlace> places_;
 };
 
-}  // namespace mw::machine
+}  // namespace mw::gcode

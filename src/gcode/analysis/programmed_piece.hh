@@ -3,12 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
 
 #include "base/geometry/pose.hh"
-#include "motion/interface/path_command.hh"
 
-namespace mw::machine {
+namespace mw::gcode {
 
 /// A programmed move with its start position.
 struct ProgrammedPiece {
@@ -18,10 +16,6 @@ struct ProgrammedPiece {
     bool isRapid = false;
     bool isInUvw = false;  ///< the arc is in U, V and W
 };
-
-/// The move of a path command that begins at `start`; nothing for commands that are not moves. Rigid tapping
-/// returns to its start.
-std::optional<ProgrammedPiece> programmed_piece(const geometry::Pose &start, const motion::PathBody &body);
 
 /// The nearest point of a piece: the position along it and the distances in both groups of coordinates.
 struct Nearest {
@@ -83,4 +77,4 @@ class PieceShape {
     bool isCircle_ = false;  ///< an arc that is not a helix or spiral and moves no other length
 };
 
-}  // namespace mw::machine
+}  // namespace mw::gcode

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/geometry/pose.hh"
-#include "machine/analysis/path_pieces.hh"
+#include "machine/certificate/path_pieces.hh"
 
 namespace mw::machine {
 
@@ -66,9 +66,9 @@ class PathDeviation {
     };
     /// The step from a sample to the next.
     struct Step {
-        PieceShape chord;  ///< line between both samples
+        gcode::PieceShape chord;  ///< line between both samples
         /// Maximum distance between the motion and its chord: 1/8 of the second differences.
-        Slack sag;
+        gcode::Slack sag;
         std::int64_t time_ns = 0;
     };
     /// One possible assignment of the samples to the path.
@@ -96,8 +96,8 @@ class PathDeviation {
     /// `limit`: `before` was on the piece at the last sample, `passing` has reached it in this step.
     std::optional<Passing> pass(const Candidate *before, const std::optional<Passing> &passing,
                                 const Step &step, double limit);
-    Nearest corner_distance(std::uint64_t number, const Step &step, double from) const;
-    void add_corner(Candidate &candidate, const Nearest &nearest, std::int64_t time_ns) const;
+    gcode::Nearest corner_distance(std::uint64_t number, const Step &step, double from) const;
+    void add_corner(Candidate &candidate, const gcode::Nearest &nearest, std::int64_t time_ns) const;
     void move_to(Candidate &candidate, const Sample &sample, double from) const;
     static void add(Candidate &candidate, const Deviation &found);
     static bool isBetter(const Candidate &a, const Candidate &b);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/analysis/programmed_piece.hh"
+#include "gcode/analysis/programmed_piece.hh"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "base/overloaded.hh"
-
-namespace mw::machine {
+namespace mw::gcode {
 namespace {
 
 using geometry::Pose;
@@ -155,38 +154,6 @@ Nearest PieceShape::nearest(const Pose &p, double from, const Slack &slack) cons
     return best;
 }
 
-std::optional<ProgrammedPiece> programmed_piece(const Pose &start, const motion::PathBody &body) {
-    ProgrammedPiece piece;
-    piece.start = start;
-    const auto read = Overloaded{
-        [&](const motion::Line &line) {
-            piece.end = line.end;
-            piece.isRapid = line.terms.isRapid;
-            return true;
-        },
-        [&](const motion::Arc &arc) {
-            piece.end = arc.end;
-            piece.centre = arc.centre;
-            piece.normal = arc.normal;
-            piece.angle_rad = arc.angle_rad;
-            piece.isInUvw = arc.isInUvw;
-            return true;
-        },
-        [&](const motion::Probe &probe) {
-            piece.end = probe.end;
-            return true;
-        },
-        [&](const motion::RigidTap &) {
-            piece.end = start;
-            return true;
-        },
-        [](const motion::Flush &) { return false; },
-        [](const motion::SynchedDigitalOutput &) { return false; },
-        [](const motion::SynchedAnalogOutput &) { return false; },
-    };
-    return std::visit(read, body) ? std::optional(piece) : std::nullopt;
-}
-
 double feed_length(const ProgrammedPiece &piece) {
     const Pose d = piece.end - piece.start;
     if (piece.angle_rad != 0) {
@@ -211,4 +178,4 @@ double feed_length(const ProgrammedPiece &piece) {
     return second > 0 ? second : geometry::norm_abc(d);
 }
 
-}  // namespace mw::machine
+}  // namespace mw::gcode

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/limits.hh"
-#include "machine/analysis/path_deviation.hh"
+#include "machine/certificate/path_deviation.hh"
 
 namespace mw::machine {
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/analysis/path_pieces.hh"
+#include "machine/certificate/path_pieces.hh"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "base/overloaded.hh"
 
 namespace mw::machine {
 namespace {
@@ -20,8 +22,41 @@ double pose_distance(const Pose &a, const Pose &b) {
 
 }  // namespace
 
+std::optional<gcode::ProgrammedPiece> programmed_piece(const geometry::Pose &start,
+                                                       const motion::PathBody &body) {
+    gcode::ProgrammedPiece piece;
+    piece.start = start;
+    const auto read = Overloaded{
+        [&](const motion::Line &line) {
+            piece.end = line.end;
+            piece.isRapid = line.terms.isRapid;
+            return true;
+        },
+        [&](const motion::Arc &arc) {
+            piece.end = arc.end;
+            piece.centre = arc.centre;
+            piece.normal = arc.normal;
+            piece.angle_rad = arc.angle_rad;
+            piece.isInUvw = arc.isInUvw;
+            return true;
+        },
+        [&](const motion::Probe &probe) {
+            piece.end = probe.end;
+            return true;
+        },
+        [&](const motion::RigidTap &) {
+            piece.end = start;
+            return true;
+        },
+        [](const motion::Flush &) { return false; },
+        [](const motion::SynchedDigitalOutput &) { return false; },
+        [](const motion::SynchedAnalogOutput &) { return false; },
+    };
+    return std::visit(read, body) ? std::optional(piece) : std::nullopt;
+}
+
 void PathPieces::add(const ProgrammedMove &move) {
-    const ProgrammedPiece &shape = move.piece;
+    const gcode::ProgrammedPiece &shape = move.piece;
     const bool isJoined = hasMove_ && pose_distance(shape.start, last_end_) <= EXACT_TOLERANCE;
     const bool wasMeasured = isLastMeasured_;
     hasMove_ = true;
@@ -30,7 +65,7 @@ void PathPieces::add(const ProgrammedMove &move) {
         return;
     }
     isLastMeasured_ = move.isMeasured;
-    WaitingMove waiting{PathPiece{.shape = PieceShape(shape), .id = move.id, .source = move.source}};
+    WaitingMove waiting{PathPiece{.shape = gcode::PieceShape(shape), .id = move.id, .source = move.source}};
     PathPiece &whole = waiting.whole;
     whole.isExact = move.mode != geometry::PathMode::BLEND;
     whole.tolerance = whole.isExact ? EXACT_TOLERANCE : move.tolerance;
@@ -52,7 +87,7 @@ bool PathPieces::has(std::uint64_t number) {
             pieces_.push_back(std::move(move.whole));
         } else {
             PathPiece part = move.whole;
-            part.shape = PieceShape(move.whole.shape.part_of(move.made, move.parts));
+            part.shape = gcode::PieceShape(move.whole.shape.part_of(move.made, move.parts));
             part.start = move.made == 0 ? part.start : PieceStart::AT_CORNER;
             pieces_.push_back(std::move(part));
         }

@@ -9,9 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "machine/analysis/program_check.hh"
-#include "machine/analysis/time_estimate.hh"
 #include "machine/config/loaded_config.hh"
+#include "machine/config/program_analysis.hh"
 
 namespace mw::machine {
 namespace {
@@ -37,11 +36,11 @@ class ProgramCheck : public testing::Test {
     }
     ~ProgramCheck() override { std::filesystem::remove_all(folder_); }
 
-    CheckResult check(const std::string &text) {
+    gcode::CheckResult check(const std::string &text) {
         const std::string path = (folder_ / "program.ngc").string();
         std::ofstream(path) << text;
         NoTools tools;
-        return check_program(config_->machine, path, tools, tools, sink_);
+        return gcode::check_program(checked_machine(config_->machine), path, {tools, tools}, sink_);
     }
 
     std::filesystem::path folder_ =
@@ -91,14 +90,14 @@ TEST_F(ProgramCheck, ThreadsAndTapsAreTakenWhetherJointsAreAxesOrNot) {
 
 TEST_F(ProgramCheck, WhatBoundsALongMoveIsWhatBoundsMostOfIt) {
     ASSERT_NE(config_, nullptr);
-    const CheckResult result = check("G21 G90 G17 G61\nG1 X-200 F60000\nX200\nX199.9\nM2\n");
+    const gcode::CheckResult result = check("G21 G90 G17 G61\nG1 X-200 F60000\nX200\nX199.9\nM2\n");
     ASSERT_EQ(sink_.count_errors(), 0);
     ASSERT_TRUE(result.time.has_value());
     ASSERT_FALSE(result.time->slowest.empty());
-    const SlowPlace &worst = result.time->slowest.front();
+    const gcode::SlowPlace &worst = result.time->slowest.front();
     EXPECT_EQ(worst.line, 3);
     EXPECT_NE(worst.limit.find("velocity"), std::string::npos) << worst.limit;
-    const SlowPlace &last = result.time->slowest.back();
+    const gcode::SlowPlace &last = result.time->slowest.back();
     EXPECT_EQ(last.line, 4);
     EXPECT_NE(last.limit.find("acceleration"), std::string::npos) << last.limit;
 }
@@ -106,7 +105,9 @@ TEST_F(ProgramCheck, WhatBoundsALongMoveIsWhatBoundsMostOfIt) {
 /// The time of one move from 0.
 class MoveTime {
   public:
-    explicit MoveTime(const MachineConfig &machine) : estimate_(machine) { estimate_.start({}); }
+    explicit MoveTime(const MachineConfig &machine) : estimate_(timed_machine(machine)) {
+        estimate_.start({});
+    }
     double line(double x, double feed) {
         geometry::Pose end;
         end[0] = x;
@@ -133,11 +134,11 @@ class MoveTime {
         return out;
     }
     double finish() {
-        const TimeFigures &figures = estimate_.finish();
+        const gcode::TimeFigures &figures = estimate_.finish();
         EXPECT_TRUE(figures.isComplete);
         return figures.total_s;
     }
-    TimeEstimate estimate_;
+    gcode::TimeEstimate estimate_;
 };
 
 TEST_F(ProgramCheck, TheEstimateOfAnyMoveEndsAndIsItsLengthOverItsSpeed) {
@@ -163,7 +164,7 @@ TEST_F(ProgramCheck, TheEstimateOfAnyMoveEndsAndIsItsLengthOverItsSpeed) {
 TEST_F(ProgramCheck, TheTimeKnowsThatACutThatWaitsForTheSpindleBeginsAtRest) {
     ASSERT_NE(config_, nullptr);
     const auto seconds = [&](const std::string &spindle) {
-        const CheckResult result =
+        const gcode::CheckResult result =
             check("G21 G90 G17 G64 P0.05\n" + spindle + "G0 X-100\nG1 X-200 F60000\nM2\n");
         EXPECT_EQ(sink_.count_errors(), 0);
         return result.time ? result.time->total_s : 0.0;

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "machine/analysis/path_deviation.hh"
-#include "machine/analysis/test/poses.hh"
+#include "machine/certificate/path_deviation.hh"
+#include "machine/certificate/test/poses.hh"
 #include "tests/support/deviation.hh"
 
 namespace mw::machine {

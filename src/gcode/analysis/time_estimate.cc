@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/analysis/time_estimate.hh"
+#include "gcode/analysis/time_estimate.hh"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "motion/interface/parameters.hh"
-
-namespace mw::machine {
+namespace mw::gcode {
 
 namespace {
 
@@ -37,20 +35,16 @@ std::string name_of(const trajectory::MoveEstimate &move) {
 
 }  // namespace
 
-TimeEstimate::TimeEstimate(const MachineConfig &machine, const Overrides &overrides, Watch watch)
-    : watch_(std::move(watch)), settings_(motion::settings_of(machine.parameters)),
-      // An estimate has no kinematics: each joint is treated as the axis of its letter.
-      limits_(motion::fold_limits(settings_, machine.axis_map, motion::ALL_HOMED).path),
-      corner_scale_(settings_.get(motion::Parameter::TRAJ_CORNER_SCALE)),
+TimeEstimate::TimeEstimate(const TimedMachine &machine, const Overrides &overrides, Watch watch)
+    : watch_(std::move(watch)), limits_(machine.limits), corner_scale_(machine.corner_scale),
+      has_jerk_limit_(machine.has_jerk_limit),
       estimator_(std::make_unique<trajectory::Estimator>(
-          limits_, static_cast<double>(machine.servo_period_ns) * 1e-9,
-          [this](const trajectory::MoveEstimate &move) { count(move); })) {
-    const motion::FoldedLimits room = machine.limits();
+          limits_, machine.servo_period_s, [this](const trajectory::MoveEstimate &move) { count(move); })) {
     trajectory::Scales scales;
     scales.feed = overrides.feed;
     scales.rapid = overrides.rapid;
     scales.max_velocity = overrides.max_velocity > 0 ? overrides.max_velocity : scales.max_velocity;
-    estimator_->set_machine(scales, room.low, room.high);
+    estimator_->set_machine(scales, machine.low, machine.high);
 }
 
 void TimeEstimate::start(const geometry::Pose &position) {
@@ -95,7 +89,7 @@ trajectory::MoveRequest TimeEstimate::request_of(const geometry::MoveSettings &s
 namespace {
 
 /// Settings with the feed of moves that follow the spindle, calculated from its programmed speed.
-geometry::MoveSettings timed(const gcode::PreviewEvent &event) {
+geometry::MoveSettings timed(const PreviewEvent &event) {
     geometry::MoveSettings out = event.settings;
     if (out.feed_per_revolution > 0 && event.spindle_rpm > 0) {
         out.feed = out.feed_per_revolution * event.spindle_rpm / 60.0;
@@ -105,8 +99,8 @@ geometry::MoveSettings timed(const gcode::PreviewEvent &event) {
 
 }  // namespace
 
-void TimeEstimate::take(const gcode::PreviewEvent &event, std::uint64_t id) {
-    using Kind = gcode::PreviewKind;
+void TimeEstimate::take(const PreviewEvent &event, std::uint64_t id) {
+    using Kind = PreviewKind;
     id_ = id;
     if (event.spindle_awaited) {
         stop();  // the waiting time is unknown, but the move begins from standstill
@@ -136,7 +130,7 @@ void TimeEstimate::line(const geometry::Pose &end, const geometry::MoveSettings 
     position_ = end;
 }
 
-void TimeEstimate::arc(const gcode::ArcMove &move) {
+void TimeEstimate::arc(const ArcMove &move) {
     trajectory::Primitive p;
     const trajectory::ArcShape shape{move.centre, move.normal, move.angle_rad,
                                      geometry::norm_uvw(move.normal) > 0};
@@ -167,7 +161,7 @@ void TimeEstimate::stop() {
 
 void TimeEstimate::set_smooth(bool smooth) {
     stop();
-    limits_.isJerkLimited = smooth && settings_.get(motion::Parameter::TRAJ_MAX_JERK) >= motion::LEAST_JERK;
+    limits_.isJerkLimited = smooth && has_jerk_limit_;
     estimator_->set_limits(limits_);
 }
 
@@ -217,4 +211,4 @@ const TimeFigures &TimeEstimate::finish(std::size_t slow_places) {
     return figures_;
 }
 
-}  // namespace mw::machine
+}  // namespace mw::gcode

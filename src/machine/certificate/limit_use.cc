@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/analysis/limit_use.hh"
+#include "machine/certificate/limit_use.hh"
 
 #include <algorithm>
 #include <cmath>

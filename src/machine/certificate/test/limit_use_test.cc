@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "machine/analysis/limit_use.hh"
+#include "machine/certificate/limit_use.hh"
 
 namespace mw::machine {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "machine/analysis/motion_certificate.hh"
+#include "machine/certificate/motion_certificate.hh"
 
 namespace mw::machine {
 namespace {

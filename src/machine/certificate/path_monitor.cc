@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/analysis/path_monitor.hh"
+#include "machine/certificate/path_monitor.hh"
 
 #include <algorithm>
 #include <cmath>
 
-#include "machine/analysis/programmed_piece.hh"
+#include "machine/certificate/path_pieces.hh"
 
 namespace mw::machine {
 

@@ -8,7 +8,7 @@
 
 #include "base/geometry/pose.hh"
 #include "base/limits.hh"
-#include "machine/analysis/path_points.hh"
+#include "gcode/analysis/path_points.hh"
 #include "motion/interface/channels.hh"
 #include "motion/interface/path_command.hh"
 
@@ -31,14 +31,14 @@ class PathMonitor {
     void on_sample(const motion::TraceSample &sample, bool isRapid);
 
     const RunFigures &figures() const { return figures_; }
-    const std::vector<PathPoint> &points() const { return points_.all(); }
+    const std::vector<gcode::PathPoint> &points() const { return points_.all(); }
 
   private:
     double period_s_;
     RunFigures figures_;
     std::uint8_t pose_kind_ = 0;
     std::array<geometry::Pose, 2> history_{};  ///< the two previous samples
-    PathPoints points_;
+    gcode::PathPoints points_;
 };
 
 }  // namespace mw::machine

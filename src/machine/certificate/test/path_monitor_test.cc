@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <gtest/gtest.h>
 
-#include "machine/analysis/path_monitor.hh"
-#include "machine/analysis/test/poses.hh"
+#include "machine/certificate/path_monitor.hh"
+#include "machine/certificate/test/poses.hh"
 
 namespace mw::machine {
 namespace {

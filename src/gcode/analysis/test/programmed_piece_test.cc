@@ -4,11 +4,19 @@
 
 #include <gtest/gtest.h>
 
-#include "machine/analysis/programmed_piece.hh"
-#include "machine/analysis/test/poses.hh"
+#include "gcode/analysis/programmed_piece.hh"
 
-namespace mw::machine {
+namespace mw::gcode {
 namespace {
+
+geometry::Pose at(double x, double y, double z = 0, double a = 0) {
+    geometry::Pose p;
+    p[0] = x;
+    p[1] = y;
+    p[2] = z;
+    p[3] = a;
+    return p;
+}
 
 /// The smallest distance among closely spaced points of the piece.
 double searched(const PieceShape &shape, const geometry::Pose &p, double from) {
@@ -100,4 +108,4 @@ TEST(ProgrammedPiece, ArcsInUvwAreThere) {
 }
 
 }  // namespace
-}  // namespace mw::machine
+}  // namespace mw::gcode

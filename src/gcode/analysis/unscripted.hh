@@ -6,26 +6,26 @@
 
 #include "gcode/interpreter/scripts/script_host.hh"
 
-namespace mw::machine {
+namespace mw::gcode {
 
 /// Every function of a remap exists and does nothing; `asked` is called for each function call that was
 /// skipped.
-class UnscriptedHost final : public gcode::ScriptHost {
+class UnscriptedHost final : public ScriptHost {
   public:
     explicit UnscriptedHost(std::function<void()> asked) : asked_(std::move(asked)) {}
 
-    Result<> load(const gcode::ScriptSettings &, gcode::InterpreterView &) override { return {}; }
+    Result<> load(const ScriptSettings &, InterpreterView &) override { return {}; }
     Result<> begin() override { return {}; }
     /// Assumes a file, because it is unknown whether a script or a file implements an O word.
-    bool hasFunction(gcode::ScriptModule module, std::string_view) const override {
-        return module == gcode::ScriptModule::REMAP;
+    bool hasFunction(ScriptModule module, std::string_view) const override {
+        return module == ScriptModule::REMAP;
     }
-    gcode::ScriptOutcome call(gcode::ScriptModule, const std::string &, const gcode::ScriptArguments &,
-                              std::unique_ptr<gcode::SuspendedScript> &) override {
+    ScriptOutcome call(ScriptModule, const std::string &, const ScriptArguments &,
+                       std::unique_ptr<SuspendedScript> &) override {
         asked_();
         return {};
     }
-    gcode::ScriptOutcome run_text(std::string_view) override {
+    ScriptOutcome run_text(std::string_view) override {
         asked_();
         return {};
     }
@@ -37,9 +37,9 @@ class UnscriptedHost final : public gcode::ScriptHost {
 };
 
 /// Returns 0 for HAL values and calls `asked` for each, because they are known only while the machine runs.
-class UnknownHalValues final : public gcode::ParameterSource {
+class UnknownHalValues final : public ParameterSource {
   public:
-    UnknownHalValues(gcode::ParameterSource &values, std::function<void()> asked)
+    UnknownHalValues(ParameterSource &values, std::function<void()> asked)
         : values_(values), asked_(std::move(asked)) {}
 
     std::optional<double> ini_value(std::string_view section, std::string_view key) const override {
@@ -51,8 +51,8 @@ class UnknownHalValues final : public gcode::ParameterSource {
     }
 
   private:
-    gcode::ParameterSource &values_;
+    ParameterSource &values_;
     std::function<void()> asked_;
 };
 
-}  // namespace mw::machine
+}  // namespace mw::gcode

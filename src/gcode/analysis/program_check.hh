@@ -10,12 +10,26 @@
 #include <vector>
 
 #include "base/diagnostics/sink.hh"
+#include "gcode/analysis/path_points.hh"
 #include "gcode/analysis/preview.hh"
-#include "machine/analysis/path_points.hh"
-#include "machine/analysis/time_estimate.hh"
-#include "machine/config/machine_config.hh"
+#include "gcode/analysis/time_estimate.hh"
 
-namespace mw::machine {
+namespace mw::gcode {
+
+/// The machine for which a program is checked.
+struct CheckedMachine {
+    PreviewMachine start;  ///< homed and without a tool
+    TimedMachine limits;
+    /// INI key of a soft limit: "[AXIS_X]MAX_LIMIT".
+    std::function<std::string(int axis, bool is_low)> limit_key;
+    bool is_start_known = true;  ///< false: without trivial kinematics the pose before the start is unknown
+};
+
+/// Sources of values for a program; both are only read.
+struct ProgramSources {
+    ToolSource &tools;
+    ParameterSource &parameters;
+};
 
 struct CheckResult {
     std::uint64_t blocks = 0, moves = 0;
@@ -27,8 +41,8 @@ struct CheckResult {
 };
 
 struct CheckOptions {
-    std::function<bool(const gcode::PreviewProgress &)> progress;  ///< false ends the check; may be empty
-    /// Number of statements that a loop may execute, 0: no limit; default as in gcode::PreviewOptions.
+    std::function<bool(const PreviewProgress &)> progress;  ///< false ends the check; may be empty
+    /// Number of statements that a loop may execute, 0: no limit; default as in PreviewOptions.
     std::optional<std::int64_t> statements;
     /// If set, Python and user programs are not run. It is called when the program may depend on values known
     /// only to the running machine (scripts, HAL values, inputs, probes); later errors are then uncertain.
@@ -43,16 +57,10 @@ struct CheckOptions {
 /// Interprets the whole program. Errors (syntax, limits, endless loops) go to `sink` with their positions, at
 /// most `MAX_CHECK_ERRORS`. Tool table and parameter file are only read. When `progress` returns false the
 /// check ends with the results so far.
-CheckResult check_program(const MachineConfig &machine, const std::string &program, gcode::ToolSource &tools,
-                          gcode::ParameterSource &parameters, diagnostics::Sink &sink,
+CheckResult check_program(const CheckedMachine &machine, const std::string &program,
+                          const ProgramSources &sources, diagnostics::Sink &sink,
                           const CheckOptions &options = {});
 
 inline constexpr int MAX_CHECK_ERRORS = 20;
 
-/// The machine at the start of a program, homed and without a tool; `machine` must outlive it.
-gcode::PreviewMachine preview_stand(const MachineConfig &machine);
-
-/// Position of the homed machine; without trivial kinematics, a position within the limits.
-geometry::Pose home_position(const MachineConfig &machine);
-
-}  // namespace mw::machine
+}  // namespace mw::gcode

@@ -7,7 +7,7 @@
 
 #include "base/geometry/pose.hh"
 
-namespace mw::machine {
+namespace mw::gcode {
 
 struct PathPoint {
     float x, y, z;  ///< [machine units], machine coordinates
@@ -43,4 +43,4 @@ class PathPoints {
     std::uint64_t stride_ = 1, until_point_ = 0;
 };
 
-}  // namespace mw::machine
+}  // namespace mw::gcode

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "machine/analysis/limit_use.hh"
-#include "machine/analysis/path_deviation.hh"
+#include "machine/certificate/limit_use.hh"
+#include "machine/certificate/path_deviation.hh"
 #include "machine/config/machine_config.hh"
 #include "machine/task/sequencer/sequencer.hh"
 #include "motion/interface/channels.hh"

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "machine/analysis/program_check.hh"
+#include "gcode/analysis/program_check.hh"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "machine/analysis/programmed_piece.hh"
-#include "machine/config/unscripted.hh"
+#include "gcode/analysis/programmed_piece.hh"
+#include "gcode/analysis/unscripted.hh"
 
-namespace mw::machine {
+namespace mw::gcode {
 namespace {
 
 /// Tolerance for soft limits: rounding of offsets must not reject a move to the exact limit.
@@ -24,11 +25,11 @@ using IsCertain = std::function<bool(const diagnostics::Diagnostic &)>;
 /// Checks each move of a preview.
 class Checker {
   public:
-    Checker(const MachineConfig &machine, diagnostics::Sink &sink, const CheckOptions &options,
+    Checker(const CheckedMachine &machine, diagnostics::Sink &sink, const CheckOptions &options,
             IsCertain is_certain)
         : machine_(machine), sink_(sink), options_(options), isCertain_(std::move(is_certain)),
-          limits_(machine.limits()), estimate_(machine) {
-        estimate_.start(home_position(machine));
+          limits_(machine.limits), estimate_(machine.limits) {
+        estimate_.start(machine.start.position);
         result.lowest.fill(1e300);
         result.highest.fill(-1e300);
     }
@@ -36,10 +37,10 @@ class Checker {
     CheckResult result;
 
     /// `preview` converts the positions of the events.
-    void take(std::span<const gcode::PreviewEvent> events, const gcode::Preview &preview) {
+    void take(std::span<const PreviewEvent> events, const Preview &preview) {
         preview_ = &preview;
         timed_ = timed_ && (!options_.wantsTime || options_.wantsTime());
-        for (const gcode::PreviewEvent &event : events) {
+        for (const PreviewEvent &event : events) {
             event_ = &event;
             if (timed_) {
                 estimate_.set_place(preview.file(event.file), event.line, preview.section(event.section));
@@ -55,8 +56,8 @@ class Checker {
     }
 
   private:
-    void take_event(const gcode::PreviewEvent &event) {
-        using Kind = gcode::PreviewKind;
+    void take_event(const PreviewEvent &event) {
+        using Kind = PreviewKind;
         ProgrammedPiece piece;
         piece.start = event.start;
         piece.end = event.end;
@@ -108,7 +109,7 @@ class Checker {
 
     void check_point(const geometry::Pose &p) {
         for (int axis = 0; axis < MAX_AXES; ++axis) {
-            if ((machine_.axis_mask & (1U << axis)) != 0) {
+            if ((machine_.start.axis_mask & (1U << axis)) != 0) {
                 check_coordinate(axis, p[axis]);
             }
         }
@@ -126,25 +127,7 @@ class Checker {
         report(fmt::format("the move goes to {} = {:.4f}, outside the {} limit {:g} of axis {}",
                            geometry::AXIS_LETTERS[i], value, is_low ? "lower" : "upper", limit,
                            geometry::AXIS_LETTERS[i]),
-               key_of_limit(axis, is_low));
-    }
-
-    /// INI key of the tightest limit, of an axis or of the joints that move it.
-    std::string key_of_limit(int axis, bool is_low) const {
-        const double limit = is_low ? limits_.low[axis] : limits_.high[axis];
-        std::string section = std::string("AXIS_") + geometry::AXIS_LETTERS[axis];
-        for (int joint = 0; joint < machine_.num_joints; ++joint) {
-            const auto j = static_cast<std::size_t>(joint);
-            const double own = is_low ? limits_.joints.low[j] : limits_.joints.high[j];
-            const bool is_joint = machine_.axis_map.moves(joint, axis) && own == limit;
-            section =
-                is_joint && limit != axis_limit(axis, is_low) ? "JOINT_" + std::to_string(joint) : section;
-        }
-        return fmt::format("[{}]{}_LIMIT", section, is_low ? "MIN" : "MAX");
-    }
-    double axis_limit(int axis, bool is_low) const {
-        return motion::settings_of(machine_.parameters)
-            .get(is_low ? motion::Parameter::AXIS_MIN_LIMIT : motion::Parameter::AXIS_MAX_LIMIT, axis);
+               machine_.limit_key(axis, is_low));
     }
 
     /// Sixty-four chords per circle approximate the extreme positions along each axis.
@@ -194,38 +177,20 @@ class Checker {
         sink_.report(error);
     }
 
-    const MachineConfig &machine_;
+    const CheckedMachine &machine_;
     diagnostics::Sink &sink_;
     const CheckOptions &options_;
     IsCertain isCertain_;  ///< empty: all findings are certain
-    motion::FoldedLimits limits_;
+    const TimedMachine &limits_;
     TimeEstimate estimate_;
     bool timed_ = true;
-    const gcode::Preview *preview_ = nullptr;
-    const gcode::PreviewEvent *event_ = nullptr;
+    const Preview *preview_ = nullptr;
+    const PreviewEvent *event_ = nullptr;
     int reported_line_ = -1;
 };
 
-}  // namespace
-
-gcode::PreviewMachine preview_stand(const MachineConfig &machine) {
-    gcode::PreviewMachine stand;
-    stand.interpreter = machine.task.interpreter;
-    stand.units = machine.task.machine_units;
-    stand.axis_mask = machine.axis_mask;
-    stand.spindles = machine.num_spindles;
-    stand.parameter_file = machine.task.parameter_file;
-    stand.position = home_position(machine);
-    stand.tool_change_moves = [&machine](const geometry::Pose &position) {
-        return task::tool_change_moves(machine.task.tool_change_place, position);
-    };
-    return stand;
-}
-
-namespace {
-
-gcode::PreviewOptions preview_options(const CheckOptions &check) {
-    gcode::PreviewOptions options;
+PreviewOptions preview_options(const CheckOptions &check) {
+    PreviewOptions options;
     options.max_errors = MAX_CHECK_ERRORS;
     if (check.statements) {
         options.statement_budget = options.idle_budget = static_cast<std::uint64_t>(*check.statements);
@@ -234,18 +199,16 @@ gcode::PreviewOptions preview_options(const CheckOptions &check) {
     return options;
 }
 
-struct ProgramSources {
-    gcode::ToolSource &tools;
-    gcode::ParameterSource &parameters;
+/// Receiver of findings.
+struct Findings {
+    diagnostics::Sink &sink;
+    IsCertain is_certain;
 };
 
-/// Interprets the program with the machine at `start`.
-CheckResult check_from(const geometry::Pose &start, const MachineConfig &machine, const std::string &program,
-                       const ProgramSources &sources, diagnostics::Sink &sink, const CheckOptions &check,
-                       IsCertain is_certain) {
-    gcode::Preview *source = nullptr;
-    gcode::PreviewMachine stand = preview_stand(machine);
-    stand.position = start;
+CheckResult check_from(const CheckedMachine &machine, const std::string &program,
+                       const ProgramSources &sources, Findings findings, const CheckOptions &check) {
+    Preview *source = nullptr;
+    PreviewMachine stand = machine.start;
     stand.block_delete_on = check.block_delete_on;
     const auto tell_unknown = [&](std::string_view what) {
         if (source != nullptr) {
@@ -256,7 +219,7 @@ CheckResult check_from(const geometry::Pose &start, const MachineConfig &machine
     const bool has_scripts = !stand.interpreter.scripts.top_level.empty();
     UnknownHalValues unknown_values(sources.parameters, [&] { tell_unknown("a value of HAL"); });
     if (check.unknown) {
-        stand.interpreter.make_script_host = [&]() -> Result<std::unique_ptr<gcode::ScriptHost>> {
+        stand.interpreter.make_script_host = [&]() -> Result<std::unique_ptr<ScriptHost>> {
             return std::make_unique<UnscriptedHost>([&] { tell_unknown("Python"); });
         };
     }
@@ -268,19 +231,18 @@ CheckResult check_from(const geometry::Pose &start, const MachineConfig &machine
         } else if (source != nullptr) {
             source->flush();  // flushes first, so that findings are in the order of the program
         }
-        sink.report(one);
+        findings.sink.report(one);
     });
-    Checker checker(machine, sink, check, std::move(is_certain));
-    gcode::Preview preview(
-        std::move(stand), sources.tools, check.unknown ? unknown_values : sources.parameters,
-        preview_options(check),
-        {[&](std::span<const gcode::PreviewEvent> events) { checker.take(events, *source); }, check.progress,
-         check.unknown});
+    Checker checker(machine, findings.sink, check, std::move(findings.is_certain));
+    Preview preview(std::move(stand), sources.tools, check.unknown ? unknown_values : sources.parameters,
+                    preview_options(check),
+                    {[&](std::span<const PreviewEvent> events) { checker.take(events, *source); },
+                     check.progress, check.unknown});
     source = &preview;
-    const gcode::PreviewEnd end = preview.run(program, errors);
+    const PreviewEnd end = preview.run(program, errors);
     checker.result.blocks = preview.progress().blocks;
-    checker.result.cancelled = end == gcode::PreviewEnd::CANCELLED;
-    if (end == gcode::PreviewEnd::DONE && !sink.hasErrors()) {
+    checker.result.cancelled = end == PreviewEnd::CANCELLED;
+    if (end == PreviewEnd::DONE && !findings.sink.hasErrors()) {
         checker.finish_time();
     }
     return checker.result;
@@ -293,7 +255,7 @@ std::string words_of(const diagnostics::Diagnostic &one) {
 /// Without trivial kinematics the pose before the start is unknown. A move that exceeds a limit from two
 /// unrelated poses exceeds it from all poses. The second pose is only checked after a finding. The arguments
 /// must outlive the result.
-IsCertain beyond_from_elsewhere(const MachineConfig &machine, const std::string &program,
+IsCertain beyond_from_elsewhere(const CheckedMachine &machine, const std::string &program,
                                 const ProgramSources &sources, const CheckOptions &check) {
     return [&machine, &program, sources, &check,
             found = std::optional<std::set<std::string>>()](const diagnostics::Diagnostic &error) mutable {
@@ -309,11 +271,11 @@ IsCertain beyond_from_elsewhere(const MachineConfig &machine, const std::string 
                 quiet.unknown = [](const SourcePlace &, std::string_view) {};
             }
             quiet.wantsTime = [] { return false; };
-            geometry::Pose elsewhere = home_position(machine);
+            CheckedMachine elsewhere = machine;
             for (int axis = 0; axis < MAX_AXES; ++axis) {
-                elsewhere[axis] += 17.37 + 0.913 * axis;
+                elsewhere.start.position[axis] += 17.37 + 0.913 * axis;
             }
-            check_from(elsewhere, machine, program, sources, collected, quiet, {});
+            check_from(elsewhere, program, sources, {collected, {}}, quiet);
         }
         return found->contains(words_of(error));
     };
@@ -321,37 +283,13 @@ IsCertain beyond_from_elsewhere(const MachineConfig &machine, const std::string 
 
 }  // namespace
 
-geometry::Pose home_position(const MachineConfig &machine) {
-    if (!machine.isTrivial) {
-        const motion::FoldedLimits limits = machine.limits();
-        geometry::Pose within;
-        for (int axis = 0; axis < MAX_AXES; ++axis) {
-            within[axis] = std::max(limits.low[axis], std::min(0.0, limits.high[axis]));
-        }
-        return within;
-    }
-    std::array<double, MAX_JOINTS> home{};
-    for (const motion::SetParameter &parameter : machine.parameters) {
-        const bool is_home = parameter.parameter == static_cast<std::uint16_t>(motion::Parameter::JOINT_HOME);
-        if (is_home && parameter.index >= 0 && parameter.index < MAX_JOINTS) {
-            home[static_cast<std::size_t>(parameter.index)] = parameter.value;
-        }
-    }
-    geometry::Pose position;
-    for (int axis = 0; axis < MAX_AXES; ++axis) {
-        const int joint = machine.joint_of_axis[static_cast<std::size_t>(axis)];
-        position[axis] = joint >= 0 ? home[static_cast<std::size_t>(joint)] : 0.0;
-    }
-    return position;
+CheckResult check_program(const CheckedMachine &machine, const std::string &program,
+                          const ProgramSources &sources, diagnostics::Sink &sink, const CheckOptions &check) {
+    return check_from(machine, program, sources,
+                      {sink, machine.is_start_known
+                                 ? IsCertain{}
+                                 : beyond_from_elsewhere(machine, program, sources, check)},
+                      check);
 }
 
-CheckResult check_program(const MachineConfig &machine, const std::string &program, gcode::ToolSource &tools,
-                          gcode::ParameterSource &parameters, diagnostics::Sink &sink,
-                          const CheckOptions &check) {
-    const ProgramSources sources{tools, parameters};
-    const IsCertain is_certain =
-        machine.isTrivial ? IsCertain{} : beyond_from_elsewhere(machine, program, sources, check);
-    return check_from(home_position(machine), machine, program, sources, sink, check, is_certain);
-}
-
-}  // namespace mw::machine
+}  // namespace mw::gcode
