@@ -26,7 +26,8 @@ std::uint64_t latency_cycles(double period_s) noexcept {
 
 PathPlanner::PathPlanner(const PathPlannerConfig &config, const kinematics::Kinematics &kinematics,
                          Channels &channels, PathLink &link) noexcept
-    : config_(config), kinematics_(kinematics), map_(kinematics), channels_(channels), link_(link),
+    : config_(config), kinematics_(kinematics), reach_(kinematics, config.num_joints), channels_(channels),
+      link_(link),
       planner_(link.store, {config.servo_period_s, latency_cycles(config.servo_period_s), config.chooser}) {}
 
 void PathPlanner::update() noexcept {
@@ -34,7 +35,7 @@ void PathPlanner::update() noexcept {
         return;  // the servo thread is writing; retry in the next update
     }
     follow_controller();
-    if (limits_.offset_axes != 0) {
+    if (reach_.limits().offset_axes != 0) {
         isPathBegun_ && !isIdle() ? window_.follow(view_.executor.done_move) : window_.clear();
         publish_extent();
     }
@@ -60,18 +61,13 @@ void PathPlanner::update() noexcept {
 }
 
 void PathPlanner::follow_controller() noexcept {
-    if (view_.limits_version != limits_version_ && link_.limits.read(limits_, 1000)) {
+    if (view_.limits_version != limits_version_ && reach_.follow(link_.limits)) {
         limits_version_ = view_.limits_version;
-        if (limits_.position_changes != position_changes_) {
-            position_changes_ = limits_.position_changes;
-            end_joints_ = limits_.start_joints;
-            map_.stand_at(limits_.start_joints, limits_.side);
-        }
-        planner_.set_limits(limits_.limits);
-        const bool isMapped = kinematics_.identity() == nullptr && kinematics_.isShareable();
-        planner_.set_room(limits_.low, limits_.high);
+        planner_.set_limits(reach_.limits().limits);
+        planner_.set_room(reach_.limits().low, reach_.limits().high);
         const kinematics::LinearJoints linear = kinematics_.linear();
-        planner_.set_joints(isMapped ? &map_ : nullptr, limits_.joints, {linear.joints, linear.slope});
+        planner_.set_joints(reach_.isMapped() ? &reach_.map() : nullptr, reach_.limits().joints,
+                            {linear.joints, linear.slope});
     }
     follow_drops();
     if (view_.epoch != epoch_) {
@@ -414,14 +410,14 @@ void PathPlanner::follow_steps() noexcept {
 void PathPlanner::publish_extent() noexcept {
     const PathExtent extent = window_.extent();
     link_.extent.write(extent);
-    PoseRange room{limits_.low, limits_.high};
+    PoseRange room{reach_.limits().low, reach_.limits().high};
     for (int i = 0; i < geometry::AXIS_COUNT && !extent.isEmpty; ++i) {
-        const bool isShared = (limits_.offset_axes >> i & 1U) != 0;
+        const bool isShared = (reach_.limits().offset_axes >> i & 1U) != 0;
         room.low[i] = isShared ? extent.range.axes.low[i] - CORNER_ROUNDING : room.low[i];
         room.high[i] = isShared ? extent.range.axes.high[i] + CORNER_ROUNDING : room.high[i];
     }
     trajectory::JointRoom joints;
-    joints.joints = extent.isEmpty ? 0 : limits_.shared.joints;
+    joints.joints = extent.isEmpty ? 0 : reach_.limits().shared.joints;
     for (std::size_t j = 0; j < joints.low.size(); ++j) {
         joints.low[j] = extent.range.joints.low[j] - CORNER_ROUNDING;
         joints.high[j] = extent.range.joints.high[j] + CORNER_ROUNDING;

@@ -12,6 +12,7 @@
 #include "motion/planner/path_link.hh"
 #include "motion/planner/path_window.hh"
 #include "motion/planner/pending_commands.hh"
+#include "motion/planner/reach_check.hh"
 #include "trajectory/planner.hh"
 
 namespace mw::motion {
@@ -24,47 +25,8 @@ struct PathPlannerConfig {
     trajectory::SpeedChooser *chooser = nullptr;  ///< a planner module of a user
 };
 
-/// The inverse of pure kinematics for the planner. Among several solutions it returns the one with the
-/// configuration of its last joint positions.
-class KinematicsMap final : public trajectory::JointMap {
-  public:
-    using Joints = std::array<double, MAX_JOINTS>;
-
-    explicit KinematicsMap(const kinematics::Kinematics &kinematics) noexcept : kinematics_(kinematics) {}
-    void stand_at(const Joints &joints, int side) noexcept {
-        near_ = joints;
-        side_ = side;
-    }
-    /// Finds the joints at a pose, nearest to those in `joints`. Also returns SINGULAR for a pose that can be
-    /// reached only through a singular one.
-    kinematics::Status find(const geometry::Pose &pose, double *joints) const noexcept {
-        const bool isBeyond = side_ != 0 && kinematics_.side(pose) != side_;
-        const kinematics::Status status = kinematics_.inverse(pose, joints);
-        return isBeyond && isAnswered(status) ? kinematics::Status::SINGULAR : status;
-    }
-    bool joints_at(const geometry::Pose &pose, double *joints) const noexcept override {
-        std::copy(near_.begin(), near_.end(), joints);
-        const bool isFound = find(pose, joints) == kinematics::Status::OK;
-        if (isFound) {
-            std::copy_n(joints, near_.size(), near_.begin());
-        }
-        return isFound;
-    }
-
-  private:
-    const kinematics::Kinematics &kinematics_;
-    mutable Joints near_{};  // [planner thread]
-    int side_ = 0;
-};
-
-/// Remaining travel of a line to the nearest limit.
-struct TravelToLimit {
-    double way = trajectory::UNLIMITED;  ///< [machine units, degrees]
-    int axis = -1, joint = -1;           ///< axis or joint of the limit; joint MAX_JOINTS: the kinematics
-};
-
-/// After a rejection or a stop, the remaining path commands of the epoch are answered STALE until a new epoch
-/// or Enable. So the machine never follows a path with a gap.
+/// After a rejection or a stop, the remaining path commands of the same epoch are answered STALE until a new
+/// epoch or Enable. A path with a gap is never driven.
 class PathPlanner {
   public:
     PathPlanner(const PathPlannerConfig &config, const kinematics::Kinematics &kinematics, Channels &channels,
@@ -98,17 +60,6 @@ class PathPlanner {
     TravelRange available_travel(const TravelRange &move) noexcept;
     void publish_extent() noexcept;
     void tell_overreach(const trajectory::Overreach &overreach) noexcept;
-    /// Joint positions at a point of a path.
-    struct PathSample {
-        double at = 0;
-        std::array<double, MAX_JOINTS> joints{};
-    };
-    TravelToLimit room_for_joints(const trajectory::Primitive &line, double sense, const TravelToLimit &axes,
-                                  std::array<double, MAX_JOINTS> joints, double turn) const noexcept;
-    bool isSteady(const trajectory::Primitive &p, PathSample from, PathSample to) const noexcept;
-    Reason check_joints(const trajectory::Primitive &p, const JointRange &room) noexcept;
-    Reason check_shared(const trajectory::Primitive &p, const JointRange &move,
-                        const JointRange &room) noexcept;
     trajectory::MoveRequest request_for(const PathCommand &c, const MoveTerms &terms) const noexcept;
     void add_pending(const PathCommand &c, const SourceTag &source) noexcept;
     void open_gates() noexcept;
@@ -121,17 +72,14 @@ class PathPlanner {
 
     PathPlannerConfig config_;
     const kinematics::Kinematics &kinematics_;
-    KinematicsMap map_;
+    ReachCheck reach_;
     Channels &channels_;
     PathLink &link_;
     trajectory::Planner planner_;
     PendingCommands pending_;
 
     PathView view_;
-    PathLimits limits_;
-    PathWindow window_;                            ///< used while there are external offsets
-    std::array<double, MAX_JOINTS> end_joints_{};  ///< at the end of the last accepted move
-    std::uint32_t position_changes_ = 0;           ///< of the limits
+    PathWindow window_;  ///< kept while there are external offsets
     std::uint32_t limits_version_ = 0;
     Epoch epoch_ = 0;
     bool isBroken_ = false;  ///< the path has a gap: further commands of this epoch are rejected

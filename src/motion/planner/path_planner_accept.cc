@@ -2,7 +2,6 @@
 // Checks path commands and passes accepted ones to the planner.
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 
 #include "motion/planner/path_planner.hh"
@@ -12,8 +11,7 @@ namespace mw::motion {
 
 namespace {
 
-constexpr double SOFT_LIMIT_ROUNDING = 1e-6;
-/// An axis that moves less than this counts as stopped [machine units, degrees].
+/// An axis that moves by less is treated as stopped [machine units, degrees].
 constexpr double LEAST_WAY = 1e-9;
 
 bool isFinite(const geometry::Pose &p) noexcept {
@@ -43,35 +41,6 @@ MotionType type_of(const PathBody &body, const MoveTerms &terms) noexcept {
     return std::holds_alternative<Arc>(body) ? MotionType::ARC : MotionType::FEED;
 }
 
-/// Remaining travel to a soft limit, from the end of a line, or from its start if the sense is -1.
-TravelToLimit room_behind(const trajectory::Primitive &line, double sense,
-                          const PathLimits &limits) noexcept {
-    const geometry::Pose &end = sense > 0 ? line.end : line.start;
-    TravelToLimit room;
-    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        const double slope = sense * line.lin[i];
-        if (slope == 0) {
-            continue;
-        }
-        const double limit = slope > 0 ? limits.high[i] : limits.low[i];
-        const double way = (limit - end[i]) / slope;
-        if (way < room.way) {
-            room = {way, i, -1};
-        }
-    }
-    return room;
-}
-
-/// Travel of joints that external offsets also move; 0 for other joints.
-JointRange shared_extent(const trajectory::Primitive &p, const SharedJoints &shared) noexcept {
-    JointRange out;
-    for (std::uint32_t left = shared.joints; left != 0; left &= left - 1) {
-        const auto j = static_cast<std::size_t>(std::countr_zero(left));
-        trajectory::extent_along(p, shared.slope[j], out.low[j], out.high[j]);
-    }
-    return out;
-}
-
 }  // namespace
 
 trajectory::MoveRequest PathPlanner::request_for(const PathCommand &c,
@@ -85,7 +54,7 @@ trajectory::MoveRequest PathPlanner::request_for(const PathCommand &c,
     r.tag.requested_velocity = terms.feed;
     r.join = terms.mode;
     r.tolerance = terms.tolerance;
-    r.corner_scale = terms.corner_scale > 0 ? terms.corner_scale : limits_.corner_scale;
+    r.corner_scale = terms.corner_scale > 0 ? terms.corner_scale : reach_.limits().corner_scale;
     const bool hasFeed = terms.feed > 0 || terms.feed_per_revolution > 0;
     r.isRapid = terms.isRapid || !hasFeed;
     r.isOverridable = terms.isFeedOverridable;
@@ -111,8 +80,9 @@ void PathPlanner::add_pending(const PathCommand &c, const SourceTag &source) noe
 /// Soft limits minus the range of external offsets. The move is published first, so that offsets do not use
 /// travel it needs.
 TravelRange PathPlanner::available_travel(const TravelRange &move) noexcept {
-    TravelRange room{{limits_.low, limits_.high}, {limits_.joints.low, limits_.joints.high}};
-    if (limits_.offset_axes == 0) {
+    TravelRange room{{reach_.limits().low, reach_.limits().high},
+                     {reach_.limits().joints.low, reach_.limits().joints.high}};
+    if (reach_.limits().offset_axes == 0) {
         return room;
     }
     constexpr int TRIES = 1000;
@@ -124,11 +94,11 @@ TravelRange PathPlanner::available_travel(const TravelRange &move) noexcept {
         return {{room.axes.high, room.axes.low}, {}};  // no range fits; a servo cycle does not take this long
     }
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        const bool isShared = (limits_.offset_axes >> i & 1U) != 0;
+        const bool isShared = (reach_.limits().offset_axes >> i & 1U) != 0;
         room.axes.low[i] -= isShared ? offsets.low[i] : 0.0;
         room.axes.high[i] -= isShared ? offsets.high[i] : 0.0;
     }
-    const JointRange taken = limits_.shared.within(offsets);
+    const JointRange taken = reach_.limits().shared.within(offsets);
     for (std::size_t j = 0; j < taken.low.size(); ++j) {  // 0 for joints that are not shared
         room.joints.low[j] -= taken.low[j];
         room.joints.high[j] -= taken.high[j];
@@ -136,164 +106,15 @@ TravelRange PathPlanner::available_travel(const TravelRange &move) noexcept {
     return room;
 }
 
-/// Checks soft limits over the whole move, and joint limits if joints are not axes.
 Reason PathPlanner::check_reach(const trajectory::Primitive &p, int indexer) noexcept {
-    geometry::Pose low;
-    geometry::Pose high;
-    trajectory::extent(p, low, high);
-    const JointRange joints = shared_extent(p, limits_.shared);
-    const TravelRange reach = available_travel({{low, high}, joints});
-    const PoseRange &room = reach.axes;
+    const TravelRange move = reach_.extent(p);
+    const TravelRange room = available_travel(move);
     if (view_.indexers_stuck != 0 && indexer < 0) {
         return Reason::INDEXER_OPEN;
     }
-    for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        refused_index_ = static_cast<std::int16_t>(i);
-        const bool isMoving = high[i] - low[i] > LEAST_WAY;
-        if (isMoving && (limits_.axes & (1U << i)) == 0) {
-            return Reason::NO_SUCH_AXIS;
-        }
-        const int lock = limits_.indexer[static_cast<std::size_t>(i)];
-        if (isMoving && lock >= 0 && lock != indexer) {
-            return Reason::INDEXER_ALONE;
-        }
-        // A move from outside the limits is accepted if it ends inside.
-        const double from = p.start[i];
-        const bool isLow = low[i] < std::min(room.low[i], from) - SOFT_LIMIT_ROUNDING ||
-                           p.end[i] < room.low[i] - SOFT_LIMIT_ROUNDING;
-        const bool isHigh = high[i] > std::max(room.high[i], from) + SOFT_LIMIT_ROUNDING ||
-                            p.end[i] > room.high[i] + SOFT_LIMIT_ROUNDING;
-        if (isMoving && (isLow || isHigh)) {
-            return Reason::BEYOND_SOFT_LIMIT;
-        }
-    }
-    refused_index_ = -1;
-    const bool isChecked = kinematics_.identity() == nullptr && kinematics_.isShareable();
-    const Reason reason = isChecked ? check_joints(p, reach.joints) : Reason::NONE;
-    return reason == Reason::NONE ? check_shared(p, joints, reach.joints) : reason;
-}
-
-/// On an arc a joint can exceed the positions sampled by check_joints(). Shared joints are checked exactly.
-Reason PathPlanner::check_shared(const trajectory::Primitive &p, const JointRange &move,
-                                 const JointRange &room) noexcept {
-    const JointRange start = limits_.shared.at(p.start);
-    for (std::uint32_t left = limits_.shared.joints; left != 0; left &= left - 1) {
-        const auto j = static_cast<std::size_t>(std::countr_zero(left));
-        const bool isOut = move.low[j] < std::min(room.low[j], start.low[j]) - SOFT_LIMIT_ROUNDING ||
-                           move.high[j] > std::max(room.high[j], start.high[j]) + SOFT_LIMIT_ROUNDING;
-        if (isOut) {
-            refused_index_ = static_cast<std::int16_t>(j);
-            return Reason::JOINT_BEYOND_LIMIT;
-        }
-    }
-    return Reason::NONE;
-}
-
-/// True if the joints can move from one point of the path to the next. Halves the distance until the joints
-/// change little, or until they would have to move so fast that the path would crawl. Joints that jump at a
-/// singular pose do so at any distance.
-bool PathPlanner::isSteady(const trajectory::Primitive &p, PathSample from, PathSample to) const noexcept {
-    constexpr double MUCH = 30;  // [machine units, degrees]
-    constexpr double LITTLE = 1;
-    constexpr double SLOWEST = 0.005;  // as a fraction of the speed of the machine
-    constexpr int HALVINGS = 40;
-    const double wish = limits_.limits.velocity.back();
-    const double slowest = wish < trajectory::UNLIMITED ? SLOWEST * wish : 0.0;
-    const auto change = [&](const PathSample &a, const PathSample &b) {
-        double most = 0;
-        for (std::size_t j = 0; j < static_cast<std::size_t>(config_.num_joints); ++j) {
-            most = std::max(most, std::abs(b.joints[j] - a.joints[j]));
-        }
-        return most;
-    };
-    const auto isCrawling = [&](const PathSample &a, const PathSample &b) {
-        bool isSlow = false;
-        for (std::size_t j = 0; j < static_cast<std::size_t>(config_.num_joints); ++j) {
-            const double step = std::abs(b.joints[j] - a.joints[j]);
-            isSlow = isSlow || (step > LITTLE && limits_.joints.velocity[j] * (b.at - a.at) < step * slowest);
-        }
-        return isSlow;
-    };
-    bool isMuch = change(from, to) > MUCH;
-    for (int n = 0; n < HALVINGS && isMuch && !isCrawling(from, to); ++n) {
-        PathSample middle{0.5 * (from.at + to.at), from.joints};
-        if (map_.find(trajectory::position_at(p, middle.at), middle.joints.data()) !=
-            kinematics::Status::OK) {
-            return false;
-        }
-        (change(from, middle) > change(middle, to) ? to : from) = middle;
-        isMuch = change(from, to) > LITTLE;
-    }
-    return !isMuch && !isCrawling(from, to);
-}
-
-Reason PathPlanner::check_joints(const trajectory::Primitive &p, const JointRange &room) noexcept {
-    // Sufficient for an angle on a circle not to change by half a revolution between samples.
-    constexpr int LEAST_SAMPLES = 64;
-    constexpr double SAMPLES_PER_RAD = 1.5;
-    constexpr double MOST_SAMPLES = 20000;
-    const double sweep = std::abs(p.omega) * p.length;
-    const int samples =
-        std::max(LEAST_SAMPLES, static_cast<int>(std::min(sweep * SAMPLES_PER_RAD, MOST_SAMPLES)));
-    PathSample last{0, end_joints_};
-    std::array<double, MAX_JOINTS> begin{};
-    for (int n = 0; n <= samples; ++n) {
-        PathSample here{p.length * n / samples, last.joints};
-        const kinematics::Status status = map_.find(trajectory::position_at(p, here.at), here.joints.data());
-        if (status == kinematics::Status::UNREACHABLE) {
-            return Reason::UNREACHABLE;
-        }
-        if (status == kinematics::Status::SINGULAR || (n > 0 && !isSteady(p, last, here))) {
-            return Reason::SINGULAR;
-        }
-        begin = n == 0 ? here.joints : begin;
-        const bool isOnTheWay = n < samples;
-        for (int j = 0; j < config_.num_joints; ++j) {
-            const auto i = static_cast<std::size_t>(j);
-            // A joint outside its limit, for instance after its drive was off, may move back but not further
-            // out.
-            const double low = isOnTheWay ? std::min(room.low[i], begin[i]) : room.low[i];
-            const double high = isOnTheWay ? std::max(room.high[i], begin[i]) : room.high[i];
-            if (here.joints[i] < low - SOFT_LIMIT_ROUNDING || here.joints[i] > high + SOFT_LIMIT_ROUNDING) {
-                refused_index_ = static_cast<std::int16_t>(j);
-                return Reason::JOINT_BEYOND_LIMIT;
-            }
-        }
-        last = here;
-    }
-    end_joints_ = last.joints;
-    return Reason::NONE;
-}
-
-/// The travel past an end of a line that the joints can follow. `joints`: their positions at that end;
-/// `turn`: travel per spindle revolution.
-TravelToLimit PathPlanner::room_for_joints(const trajectory::Primitive &line, double sense,
-                                           const TravelToLimit &axes, std::array<double, MAX_JOINTS> joints,
-                                           double turn) const noexcept {
-    constexpr int SAMPLES = 100;
-    const geometry::Pose &end = sense > 0 ? line.end : line.start;
-    TravelToLimit room = axes;
-    const double most = trajectory::TapTuning::MOST_ROOM * turn;
-    room.way = std::min(room.way, most);
-    const trajectory::Primitive on = trajectory::make_line(end, end + line.lin * (sense * most));
-    PathSample last{0, joints};
-    for (int n = 1; n <= SAMPLES && last.at < room.way; ++n) {
-        PathSample here{on.length * n / SAMPLES, last.joints};
-        const bool isFound =
-            map_.find(trajectory::position_at(on, here.at), here.joints.data()) == kinematics::Status::OK;
-        int stopped = isFound && isSteady(on, last, here) ? -1 : MAX_JOINTS;
-        for (int j = 0; j < config_.num_joints && stopped < 0; ++j) {
-            const auto i = static_cast<std::size_t>(j);
-            const bool isOut =
-                here.joints[i] < limits_.joints.low[i] || here.joints[i] > limits_.joints.high[i];
-            stopped = isOut ? j : stopped;
-        }
-        if (stopped >= 0) {
-            return {last.at - trajectory::TapTuning::ROOM_MARGIN, -1, stopped};
-        }
-        last = here;
-    }
-    return room;
+    const Refusal refusal = reach_.check(p, move, room, indexer);
+    refused_index_ = refusal.index;
+    return refusal.reason;
 }
 
 /// The joint whose lock opens for a rapid move of its axis alone; -1: none.
@@ -308,10 +129,10 @@ int PathPlanner::indexer_of(const PathBody &body) const noexcept {
         if (std::abs(way[i]) <= LEAST_WAY) {
             continue;
         }
-        if (joint >= 0 || limits_.indexer[static_cast<std::size_t>(i)] < 0) {
+        if (joint >= 0 || reach_.limits().indexer[static_cast<std::size_t>(i)] < 0) {
             return -1;
         }
-        joint = limits_.indexer[static_cast<std::size_t>(i)];
+        joint = reach_.limits().indexer[static_cast<std::size_t>(i)];
     }
     return joint;
 }
@@ -382,8 +203,8 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     const trajectory::Primitive in = trajectory::make_line(planner_.end(), tap.end);
     const bool isLine = in.length > 1e-12 * (1.0 + geometry::norm(tap.end));
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        // Both ends would need clearance for the reversal that external offsets never use.
-        if (in.lin[i] != 0 && ((limits_.offset_axes | limits_.shared.axes) >> i & 1U) != 0) {
+        // Both ends would need clearance for the reversal that offsets never use.
+        if (in.lin[i] != 0 && ((reach_.limits().offset_axes | reach_.limits().shared.axes) >> i & 1U) != 0) {
             refused_index_ = static_cast<std::int16_t>(i);
             return Reason::TAP_OFFSET;
         }
@@ -394,23 +215,19 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     if ((view_.spindles_reversible & (1U << tap.terms.synch_spindle)) == 0) {
         return Reason::ONE_WAY_SPINDLE;
     }
-    const std::array<double, MAX_JOINTS> start = end_joints_;
+    const ReachCheck::Joints start = reach_.end_joints();
     reason = check_reach(in);
-    const std::array<double, MAX_JOINTS> bottom = end_joints_;
-    end_joints_ = start;  // end of the tap
+    const ReachCheck::Joints bottom = reach_.end_joints();
+    reach_.set_end_joints(start);  // end of the tap
     if (reason != Reason::NONE) {
         return reason;
     }
     MoveTerms terms = tap.terms;
     terms.mode = PathMode::EXACT_STOP;
     trajectory::MoveRequest request = request_for(c, terms);
-    TravelToLimit before = room_behind(in, -1, limits_);
-    TravelToLimit behind = room_behind(in, 1, limits_);
     const double turn = terms.feed_per_revolution;
-    if (kinematics_.identity() == nullptr) {
-        before = room_for_joints(in, -1, before, start, turn);
-        behind = room_for_joints(in, 1, behind, bottom, turn);
-    }
+    const TravelToLimit before = reach_.travel_past(in, -1, start, turn);
+    const TravelToLimit behind = reach_.travel_past(in, 1, bottom, turn);
     const TravelToLimit &least = before.way < behind.way ? before : behind;
     if (least.way < trajectory::TapTuning::LEAST_ROOM * turn) {
         const int joint = least.joint < MAX_JOINTS ? least.joint : -1;
