@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The rules of values and expressions.
+#include "gcode/syntax/expression_parser.hh"
+
 #include <array>
 
 #include <fmt/format.h>
-
-#include "gcode/syntax/parser.hh"
 
 namespace mw::gcode::detail {
 namespace {
@@ -59,8 +58,20 @@ class DepthGuard {
 
 }  // namespace
 
+bool ExpressionParser::fail(std::string message, std::uint32_t column) {
+    error_ = std::move(message);
+    error_column_ = column;
+    return false;
+}
+
+NodeId ExpressionParser::add(Node node, const Lexer &in) {
+    node.end_column = in.column();
+    arena_.nodes.push_back(node);
+    return static_cast<NodeId>(arena_.nodes.size() - 1);
+}
+
 /// [expression], #parameter, a sign before any value, a function, or a number.
-bool Parser::real_value(Lexer &in, NodeId &out) {
+bool ExpressionParser::real_value(Lexer &in, NodeId &out) {
     const DepthGuard guard(depth_);
     if (guard.isTooDeep()) {
         return fail("The expression is nested too deeply", in.column());
@@ -82,7 +93,7 @@ bool Parser::real_value(Lexer &in, NodeId &out) {
     return number(in, out);
 }
 
-bool Parser::signed_value(Lexer &in, NodeId &out) {
+bool ExpressionParser::signed_value(Lexer &in, NodeId &out) {
     const std::uint32_t column = in.column();
     const bool negative = in.peek() == '-';
     in.take();
@@ -100,13 +111,12 @@ bool Parser::signed_value(Lexer &in, NodeId &out) {
     return true;
 }
 
-/// take_number() has failed at the position `start` or after blanks there.
-bool Parser::bad_number(const Lexer &in, std::size_t start) {
+bool ExpressionParser::bad_number(const Lexer &in, std::size_t start) {
     return fail(fmt::format("bad number format (conversion failed) parsing '{}'", in.text_from(start)),
                 static_cast<std::uint32_t>(start) + 1);
 }
 
-bool Parser::number(Lexer &in, NodeId &out) {
+bool ExpressionParser::number(Lexer &in, NodeId &out) {
     Node node{.kind = NodeKind::NUMBER, .column = in.column()};
     const std::size_t start = in.position();
     if (in.take_number(node.value) != Lexer::Number::OK) {
@@ -116,7 +126,7 @@ bool Parser::number(Lexer &in, NodeId &out) {
     return true;
 }
 
-bool Parser::parameter(Lexer &in, NodeId &out) {
+bool ExpressionParser::parameter(Lexer &in, NodeId &out) {
     const std::uint32_t column = in.column();
     in.take();
     if (in.accept('<')) {
@@ -136,7 +146,7 @@ bool Parser::parameter(Lexer &in, NodeId &out) {
 }
 
 /// The opening bracket has been read; reads the closing one.
-bool Parser::expression(Lexer &in, NodeId &out) {
+bool ExpressionParser::expression(Lexer &in, NodeId &out) {
     if (!binary(in, LOWEST_LEVEL, out)) {
         return false;
     }
@@ -146,7 +156,7 @@ bool Parser::expression(Lexer &in, NodeId &out) {
     return true;
 }
 
-bool Parser::binary_operator(Lexer &in, Operator &op, int &level) {
+bool ExpressionParser::binary_operator(Lexer &in, Operator &op, int &level) {
     const std::size_t start = in.position();
     for (const OperatorName &candidate : OPERATORS) {
         if (in.accept_word(candidate.text)) {
@@ -160,7 +170,7 @@ bool Parser::binary_operator(Lexer &in, Operator &op, int &level) {
 }
 
 /// Operators of `lowest_level` and above, each level from left to right.
-bool Parser::binary(Lexer &in, int lowest_level, NodeId &out) {
+bool ExpressionParser::binary(Lexer &in, int lowest_level, NodeId &out) {
     if (lowest_level > HIGHEST_LEVEL) {
         return real_value(in, out);
     }
@@ -194,7 +204,7 @@ bool Parser::binary(Lexer &in, int lowest_level, NodeId &out) {
     }
 }
 
-bool Parser::function(Lexer &in, NodeId &out) {
+bool ExpressionParser::function(Lexer &in, NodeId &out) {
     const std::uint32_t column = in.column();
     const char first = in.peek();
     if (in.accept_word("atan")) {
@@ -224,7 +234,7 @@ bool Parser::function(Lexer &in, NodeId &out) {
     return fail(fmt::format("Unknown word starting with {}", first), column);
 }
 
-bool Parser::atan(Lexer &in, std::uint32_t column, NodeId &out) {
+bool ExpressionParser::atan(Lexer &in, std::uint32_t column, NodeId &out) {
     NodeId y = NO_ID, x = NO_ID;
     if (!in.accept('[')) {
         return fail("Left bracket missing after unary operation name", in.column());
@@ -246,7 +256,7 @@ bool Parser::atan(Lexer &in, std::uint32_t column, NodeId &out) {
 }
 
 /// exists[#<name>] or exists[#number]: whether the parameter can be read.
-bool Parser::exists(Lexer &in, std::uint32_t column, NodeId &out) {
+bool ExpressionParser::exists(Lexer &in, std::uint32_t column, NodeId &out) {
     if (!in.accept('[')) {
         return fail("Expected [ after exists", in.column());
     }

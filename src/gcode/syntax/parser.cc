@@ -60,8 +60,7 @@ Block Parser::parse_line(std::string_view line, std::uint32_t line_number_) {
     out.first_setting = static_cast<std::uint32_t>(arena_.settings.size());
     out.first_comment = static_cast<std::uint32_t>(arena_.comments.size());
     letters_seen_ = 0;
-    depth_ = 0;
-    operators_ = 0;
+    values_.begin_line();
     Lexer in(line);
     const bool too_long = line.size() > MAX_LINE_LENGTH;
     if (too_long) {
@@ -76,21 +75,9 @@ Block Parser::parse_line(std::string_view line, std::uint32_t line_number_) {
     }
     if (!is_read) {
         out.error = static_cast<std::uint32_t>(arena_.errors.size());
-        arena_.errors.push_back({error_, error_column_});
+        arena_.errors.push_back({values_.error(), values_.error_column()});
     }
     return out;
-}
-
-bool Parser::fail(std::string message, std::uint32_t column) {
-    error_ = std::move(message);
-    error_column_ = column;
-    return false;
-}
-
-NodeId Parser::add(Node node, const Lexer &in) {
-    node.end_column = in.column();
-    arena_.nodes.push_back(node);
-    return static_cast<NodeId>(arena_.nodes.size() - 1);
 }
 
 bool Parser::block(Lexer &in, Block &out) {
@@ -176,13 +163,13 @@ bool Parser::setting(Lexer &in, Block &out) {
             return fail("Named parameter not terminated", made.column);
         }
         made.name = names_.intern(*name);
-    } else if (!real_value(in, made.index)) {
+    } else if (!values_.real_value(in, made.index)) {
         return false;
     }
     if (!in.accept('=')) {
         return fail("Equal sign missing in parameter setting", in.column());
     }
-    if (!real_value(in, made.value)) {
+    if (!values_.real_value(in, made.value)) {
         return false;
     }
     arena_.settings.push_back(made);
@@ -219,13 +206,13 @@ bool Parser::word(Lexer &in, Block &out, char c) {
     if (Lexer::beginsNumber(first)) {  // most words: no node is needed
         const std::size_t digits = in.position();
         if (in.take_number(made.value) != Lexer::Number::OK) {
-            return bad_number(in, digits);
+            return values_.bad_number(in, digits);
         }
         made.value = negative ? -made.value : made.value;
     } else {
         in.set_position(start);
         const std::size_t nodes = arena_.nodes.size();
-        if (!real_value(in, made.expression)) {
+        if (!values_.real_value(in, made.expression)) {
             return false;
         }
         if (const Node &node = arena_.nodes[made.expression]; node.kind == NodeKind::NUMBER) {
@@ -260,11 +247,11 @@ bool Parser::oword(Lexer &in, Block &out) {
         if (in.peek() != '[') {
             return fail("Expected [ and a condition or count after the O word", in.column());
         }
-        if (!real_value(in, made.value)) {
+        if (!values_.real_value(in, made.value)) {
             return false;
         }
     } else if (made.kind == OKind::RETURN || made.kind == OKind::ENDSUB) {
-        if (in.peek() == '[' && !real_value(in, made.value)) {
+        if (in.peek() == '[' && !values_.real_value(in, made.value)) {
             return false;
         }
     }
@@ -289,7 +276,7 @@ bool Parser::oword_label(Lexer &in, OWord &out) {
         return true;
     }
     if (c == '#' || c == '[') {
-        return real_value(in, out.label_expression);
+        return values_.real_value(in, out.label_expression);
     }
     double value = 0;
     if (in.take_number(value) != Lexer::Number::OK || value > 1e9) {
@@ -343,7 +330,7 @@ bool Parser::oword_call(Lexer &in, Block &out, OWord &made) {
             break;
         }
         NodeId node = NO_ID;
-        if (!real_value(in, node)) {
+        if (!values_.real_value(in, node)) {
             return false;
         }
         arguments.push_back(node);

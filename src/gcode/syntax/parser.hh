@@ -4,8 +4,10 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "gcode/syntax/ast.hh"
+#include "gcode/syntax/expression_parser.hh"
 #include "gcode/syntax/lexer.hh"
 #include "gcode/syntax/names.hh"
 
@@ -16,7 +18,7 @@ bool isPercentLine(std::string_view line);
 
 class Parser {
   public:
-    Parser(Arena &arena, Names &names) : arena_(arena), names_(names) {}
+    Parser(Arena &arena, Names &names) : arena_(arena), names_(names), values_(arena, names) {}
 
     /// Parses one line without its newline. A syntax error is kept in the block, which then has no other
     /// content.
@@ -36,27 +38,11 @@ class Parser {
     bool oword_call(Lexer &in, Block &block, OWord &out);
     bool rest_of_oword(Lexer &in, Block &out);
 
-    bool real_value(Lexer &in, NodeId &out);
-    bool signed_value(Lexer &in, NodeId &out);
-    bool bad_number(const Lexer &in, std::size_t start);
-    bool number(Lexer &in, NodeId &out);
-    bool parameter(Lexer &in, NodeId &out);
-    bool expression(Lexer &in, NodeId &out);
-    bool binary(Lexer &in, int lowest_level, NodeId &out);
-    bool binary_operator(Lexer &in, Operator &op, int &level);
-    bool function(Lexer &in, NodeId &out);
-    bool atan(Lexer &in, std::uint32_t column, NodeId &out);
-    bool exists(Lexer &in, std::uint32_t column, NodeId &out);
-
-    NodeId add(Node node, const Lexer &in);
-    bool fail(std::string message, std::uint32_t column);
+    bool fail(std::string message, std::uint32_t column) { return values_.fail(std::move(message), column); }
 
     Arena &arena_;
     Names &names_;
-    std::string error_;
-    std::uint32_t error_column_ = 0;
-    int depth_ = 0;
-    int operators_ = 0;               ///< number of binary operators in this line
+    ExpressionParser values_;
     std::uint32_t letters_seen_ = 0;  ///< bit per letter of the line, except G and M
 };
 
