@@ -1,50 +1,70 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The waits of the sequencer: dwells, inputs, handshakes.
+#include "machine/task/sequencer/program_wait.hh"
+
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "machine/task/sequencer/sequencer.hh"
+#include "base/duration.hh"
 
 namespace mw::task {
 
-bool Sequencer::isWaitOver(std::int64_t now_ns) {
+void ProgramWait::begin_dwell(double seconds, std::int64_t now_ns) {
+    for_ = For::DWELL;
+    deadline_ns_ = now_ns + to_ns(seconds);
+}
+
+void ProgramWait::begin_input(const gcode::WaitInput &input, std::int64_t now_ns) {
+    awaited_input_ = input;
+    for_ = For::INPUT;
+    deadline_ns_ = now_ns + to_ns(input.timeout_s);
+    last_input_ = std::nan("");
+    is_input_timed_out_ = false;
+}
+
+void ProgramWait::begin_orient(const gcode::WaitOrientComplete &orient, std::int64_t now_ns) {
+    for_ = For::ORIENT;
+    orient_.spindle = orient.spindle;
+    orient_.timeout_s = orient.timeout_s;
+    deadline_ns_ = now_ns + to_ns(orient.timeout_s);
+    orient_.isTold = false;
+}
+
+bool ProgramWait::isOver(std::int64_t now_ns, const UserCodeResult &user_code_result, Result<> &failure) {
     bool ended = true;
-    switch (wait_) {
-    case Wait::NONE: break;
-    case Wait::DWELL: ended = now_ns >= deadline_ns_; break;
-    case Wait::INPUT: ended = isInputWaitOver(now_ns); break;
-    case Wait::TOOL: ended = io_.action() == io::ToolAction::IDLE; break;
-    case Wait::TOOL_DATA: {
+    failure = {};
+    switch (for_) {
+    case For::NONE: break;
+    case For::DWELL: ended = now_ns >= deadline_ns_; break;
+    case For::INPUT: ended = isInputOver(now_ns); break;
+    case For::TOOL: ended = io_.action() == io::ToolAction::IDLE; break;
+    case For::TOOL_DATA: {
         const std::optional<Result<>> result = tools_.reload_result();
         ended = result.has_value();
-        check(result.value_or(Result<>{}));
+        failure = result.value_or(Result<>{});
         break;
     }
-    case Wait::LOG: {
+    case For::LOG: {
         const std::optional<Result<>> result = logs_.opened();
         ended = result.has_value();
-        check(result.value_or(Result<>{}));
+        failure = result.value_or(Result<>{});
         break;
     }
-    case Wait::ORIENT: ended = isOrientWaitOver(now_ns); break;
-    case Wait::SETTING: ended = motion_.isAnswered(awaited_setting_) && io_.isToolOffsetShown(); break;
-    case Wait::USER_CODE: {
-        const std::optional<Result<>> result = events_.user_code_result();
+    case For::ORIENT: ended = isOrientOver(now_ns, failure); break;
+    case For::SETTING: ended = motion_.isAnswered(awaited_setting_) && io_.isToolOffsetShown(); break;
+    case For::USER_CODE: {
+        const std::optional<Result<>> result = user_code_result();
         ended = result.has_value();
         if (ended && !result->has_value()) {
-            check(fail(result->error().str()));
+            failure = fail(result->error().str());
         }
         break;
     }
     }
-    if (ended) {
-        wait_ = Wait::NONE;
-    }
-    return ended && !failed_;
+    return ended;
 }
 
-bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
+bool ProgramWait::isOrientOver(std::int64_t now_ns, Result<> &failure) {
     constexpr int IN_PROGRESS = 1;
     const bool reported = orient_.isTold;
     orient_.isTold = orient_.command == 0 || motion_.isAnswered(orient_.command);
@@ -54,19 +74,20 @@ bool Sequencer::isOrientWaitOver(std::int64_t now_ns) {
     const motion::SpindleStatus &spindle =
         motion_.status().spindle[static_cast<std::size_t>(orient_.spindle)];
     if (spindle.orient_fault != 0) {
-        check(fail(fmt::format("spindle {} reports orient fault {}", orient_.spindle, spindle.orient_fault)));
+        failure =
+            fail(fmt::format("spindle {} reports orient fault {}", orient_.spindle, spindle.orient_fault));
         return true;
     }
     if (spindle.orient_state == IN_PROGRESS && now_ns >= deadline_ns_) {
-        check(
+        failure =
             fail(fmt::format("spindle {0} is not oriented within {1:g} seconds: pin spindle.{0}.is-oriented",
-                             orient_.spindle, orient_.timeout_s)));
+                             orient_.spindle, orient_.timeout_s));
         return true;
     }
     return spindle.orient_state != IN_PROGRESS;
 }
 
-bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
+bool ProgramWait::isInputOver(std::int64_t now_ns) {
     const motion::Status &status = motion_.status();
     const auto index = static_cast<std::size_t>(awaited_input_.index);
     const double value = awaited_input_.isAnalog ? status.analog_in[index]
@@ -88,40 +109,40 @@ bool Sequencer::isInputWaitOver(std::int64_t now_ns) {
     return met || is_input_timed_out_;
 }
 
-double Sequencer::dwell_left_s(std::int64_t now_ns) const {
+double ProgramWait::dwell_left_s(std::int64_t now_ns) const {
     constexpr double NS_PER_S = 1e9;
-    const bool dwelling = wait_ == Wait::DWELL && deadline_ns_ > now_ns;
+    const bool dwelling = for_ == For::DWELL && deadline_ns_ > now_ns;
     return dwelling ? static_cast<double>(deadline_ns_ - now_ns) / NS_PER_S : 0.0;
 }
 
-ExecState Sequencer::exec_state() const {
-    switch (wait_) {
-    case Wait::NONE: return blocked_;
-    case Wait::DWELL:
-    case Wait::INPUT: return ExecState::WAITING_FOR_DELAY;
-    case Wait::TOOL:
-    case Wait::TOOL_DATA:
-    case Wait::LOG: return ExecState::WAITING_FOR_IO;
-    case Wait::ORIENT: return ExecState::WAITING_FOR_SPINDLE_ORIENTED;
-    case Wait::SETTING: return ExecState::WAITING_FOR_MOTION;
-    case Wait::USER_CODE: return ExecState::WAITING_FOR_SYSTEM_CMD;
+ExecState ProgramWait::exec_state(ExecState blocked) const {
+    switch (for_) {
+    case For::NONE: return blocked;
+    case For::DWELL:
+    case For::INPUT: return ExecState::WAITING_FOR_DELAY;
+    case For::TOOL:
+    case For::TOOL_DATA:
+    case For::LOG: return ExecState::WAITING_FOR_IO;
+    case For::ORIENT: return ExecState::WAITING_FOR_SPINDLE_ORIENTED;
+    case For::SETTING: return ExecState::WAITING_FOR_MOTION;
+    case For::USER_CODE: return ExecState::WAITING_FOR_SYSTEM_CMD;
     }
     return ExecState::DONE;
 }
 
-Waiting Sequencer::waiting_for() const {
-    switch (wait_) {
-    case Wait::DWELL: return {WaitFor::DWELL, -1};
-    case Wait::INPUT:
+Waiting ProgramWait::waiting_for() const {
+    switch (for_) {
+    case For::DWELL: return {WaitFor::DWELL, -1};
+    case For::INPUT:
         return {awaited_input_.isAnalog ? WaitFor::ANALOG_INPUT : WaitFor::DIGITAL_INPUT,
                 awaited_input_.index};
-    case Wait::TOOL_DATA: return {WaitFor::TOOL_DATA, -1};
-    case Wait::ORIENT: return {WaitFor::SPINDLE_ORIENTED, orient_.spindle};
-    case Wait::SETTING: return {WaitFor::SETTING, -1};
-    case Wait::USER_CODE: return {WaitFor::USER_CODE, -1};
-    case Wait::NONE:
-    case Wait::TOOL:
-    case Wait::LOG: break;
+    case For::TOOL_DATA: return {WaitFor::TOOL_DATA, -1};
+    case For::ORIENT: return {WaitFor::SPINDLE_ORIENTED, orient_.spindle};
+    case For::SETTING: return {WaitFor::SETTING, -1};
+    case For::USER_CODE: return {WaitFor::USER_CODE, -1};
+    case For::NONE:
+    case For::TOOL:
+    case For::LOG: break;
     }
     return {io_.waiting_for(), -1};
 }

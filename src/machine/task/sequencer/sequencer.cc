@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "machine/task/sequencer/sequencer.hh"
 
-#include <cmath>
 #include <type_traits>
 
 #include "base/duration.hh"
@@ -110,7 +109,7 @@ Sequencer::Sequencer(ItemQueue &queue, MotionLink &motion, io::DiscreteIo &io, T
                      SequencerEvents events, SequencerSettings settings)
     : queue_(queue), motion_(motion), io_(io), tools_(tools), events_(std::move(events)),
       settings_(std::move(settings)), tool_change_(settings_.changer_error_text),
-      logs_(settings_.log_works, settings_.log_disk) {}
+      logs_(settings_.log_works, settings_.log_disk), wait_(motion, io, tools, logs_) {}
 
 void Sequencer::step(std::int64_t now_ns, TravelRange reach) {
     held_ = false;
@@ -154,6 +153,16 @@ void Sequencer::check(const Result<> &result) {
         failed_ = true;
         events_.fail(result.error().str());
     }
+}
+
+bool Sequencer::isWaitOver(std::int64_t now_ns) {
+    Result<> failure;
+    const bool ended = wait_.isOver(now_ns, events_.user_code_result, failure);
+    check(failure);
+    if (ended) {
+        wait_.end();
+    }
+    return ended && !failed_;
 }
 
 bool Sequencer::isStepBoundary(const Item &item) {
@@ -248,7 +257,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
                 return;
             }
             logs_.open(call, confinement_of(events_));
-            wait_ = Wait::LOG;
+            wait_.begin(ProgramWait::For::LOG);
         },
         [&](const gcode::UseOffsets &offsets) {
             spindles_.use(offsets, motion_);
@@ -256,11 +265,11 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         },
         [&](const gcode::UseToolOffset &offset) {
             spindles_.use(offset, motion_);
-            wait_for_setting(events_.tool_offset(offset));
+            wait_.begin_setting(events_.tool_offset(offset));
         },
         [&](const gcode::ReloadTools &) {
             check(tools_.reload());
-            wait_ = Wait::TOOL_DATA;
+            wait_.begin(ProgramWait::For::TOOL_DATA);
         },
         [&](const gcode::SelectTool &call) { check(tool_change_.select(call, tools_, io_)); },
         [&](const gcode::ChangeToolNumber &call) { check(tool_change_.set_number(call, tools_, io_)); },
@@ -270,7 +279,7 @@ bool Sequencer::execute(const Item &item, std::int64_t now_ns) {
         [&](const gcode::StartSpindle &call) { spindles_.start(call, motion_); },
         [&](const gcode::StopSpindle &call) { spindles_.stop(call, motion_); },
         [&](const gcode::OrientSpindle &call) {
-            orient_.command = motion_.send(motion::SpindleOrient{call.spindle, call.angle_deg, call.mode});
+            wait_.note_orient(motion_.send(motion::SpindleOrient{call.spindle, call.angle_deg, call.mode}));
         },
         [&](const gcode::SwitchMist &call) { io_.set_mist(call.isOn); },
         [&](const gcode::SwitchFlood &call) { io_.set_flood(call.isOn); },
@@ -305,7 +314,7 @@ bool Sequencer::push_output(const gcode::SetDigitalOutput &output) {
     if (output.synched) {
         return motion_.push_path(motion::SynchedDigitalOutput{output.index, output.isOn});
     }
-    wait_for_setting(motion_.send(motion::SetDigitalOutput{output.index, output.isOn}));
+    wait_.begin_setting(motion_.send(motion::SetDigitalOutput{output.index, output.isOn}));
     return true;
 }
 
@@ -313,41 +322,33 @@ bool Sequencer::push_output(const gcode::SetAnalogOutput &output) {
     if (output.synched) {
         return motion_.push_path(motion::SynchedAnalogOutput{output.index, output.value});
     }
-    wait_for_setting(motion_.send(motion::SetAnalogOutput{output.index, output.value}));
+    wait_.begin_setting(motion_.send(motion::SetAnalogOutput{output.index, output.value}));
     return true;
 }
 
 void Sequencer::perform(const gcode::Dwell &dwell, std::int64_t now_ns) {
-    wait_ = Wait::DWELL;
-    deadline_ns_ = now_ns + to_ns(dwell.seconds);
+    wait_.begin_dwell(dwell.seconds, now_ns);
 }
 
 void Sequencer::perform(const gcode::WaitInput &input, std::int64_t now_ns) {
-    awaited_input_ = input;
-    wait_ = Wait::INPUT;
-    deadline_ns_ = now_ns + to_ns(input.timeout_s);
-    last_input_ = std::nan("");
-    is_input_timed_out_ = false;
+    wait_.begin_input(input, now_ns);
 }
 
 void Sequencer::perform(const gcode::WaitOrientComplete &orient, std::int64_t now_ns) {
-    wait_ = Wait::ORIENT;
-    orient_.spindle = orient.spindle;
-    orient_.timeout_s = orient.timeout_s;
-    deadline_ns_ = now_ns + to_ns(orient.timeout_s);
-    orient_.isTold = false;
+    wait_.begin_orient(orient, now_ns);
 }
 
 bool Sequencer::begin(const gcode::UsePlanner &planner) {
     const auto setting = events_.planner_mode(planner);
-    awaited_setting_ = setting.value_or(0);
-    wait_ = awaited_setting_ != 0 ? Wait::SETTING : Wait::NONE;
+    if (setting.value_or(0) != 0) {
+        wait_.begin_setting(*setting);
+    }
     return setting.has_value();
 }
 
 void Sequencer::perform(const gcode::UserCode &code) {
     events_.start_user_code(code);
-    wait_ = Wait::USER_CODE;
+    wait_.begin(ProgramWait::For::USER_CODE);
 }
 
 void Sequencer::perform(const gcode::ChangeTool &) {
@@ -358,12 +359,12 @@ void Sequencer::perform(const gcode::ChangeTool &) {
         stop_spindles();
     }
     if (tool_change_.start(tools_, io_)) {
-        wait_ = Wait::TOOL;
+        wait_.begin(ProgramWait::For::TOOL);
     }
 }
 
 Result<> Sequencer::take_back(const geometry::Pose &place) {
-    if (wait_ != Wait::NONE && wait_ != Wait::DWELL) {
+    if (wait_.awaited() != ProgramWait::For::NONE && wait_.awaited() != ProgramWait::For::DWELL) {
         return fail("a tool change or another wait is active");
     }
     const std::string why = sent_.why_not(motion_.status(), place);
@@ -396,10 +397,10 @@ void Sequencer::abort(int reason) {
     blocked_ = ExecState::DONE;
     logs_.close();
     queue_.clear();
-    if (wait_ == Wait::TOOL_DATA) {
+    if (wait_.awaited() == ProgramWait::For::TOOL_DATA) {
         tools_.drop_reload();
     }
-    wait_ = Wait::NONE;
+    wait_.end();
     tool_change_.abort(io_);
     spindles_.end_wait();
     stepping_ = false;
@@ -409,7 +410,7 @@ void Sequencer::abort(int reason) {
 }
 
 bool Sequencer::isIdle() const {
-    return queue_.empty() && wait_ == Wait::NONE && motion_.isPathComplete() &&
+    return queue_.empty() && wait_.awaited() == ProgramWait::For::NONE && motion_.isPathComplete() &&
            io_.action() == io::ToolAction::IDLE;
 }
 

@@ -16,6 +16,7 @@
 #include "machine/task/sequencer/items.hh"
 #include "machine/task/sequencer/program_logs.hh"
 #include "machine/task/sequencer/program_spindles.hh"
+#include "machine/task/sequencer/program_wait.hh"
 #include "machine/task/sequencer/sent_moves.hh"
 #include "machine/task/sequencer/tool_change.hh"
 #include "machine/task/status.hh"
@@ -60,14 +61,6 @@ struct SequencerSettings {
     std::shared_ptr<LogDisk> log_disk = std::make_shared<LogDisk>();
 };
 
-/// The spindle that M19 orients.
-struct AwaitedOrient {
-    int spindle = 0;
-    motion::CommandId command = 0;  ///< command of the last M19
-    bool isTold = false;            ///< the status is newer than the command
-    double timeout_s = 0;
-};
-
 /// One thread; step() is called once in each task cycle and does not block.
 class Sequencer {
   public:
@@ -91,18 +84,14 @@ class Sequencer {
 
     void on_tool_event(io::ToolEvent event);
     /// The pin or state that is awaited.
-    Waiting waiting_for() const;
-    /// LinuxCNC's exec_state.
-    ExecState exec_state() const;
+    Waiting waiting_for() const { return wait_.waiting_for(); }
+    /// The same as LinuxCNC's exec_state.
+    ExecState exec_state() const { return wait_.exec_state(blocked_); }
     /// Remaining time of a dwell [s]; 0 when there is none.
-    double dwell_left_s(std::int64_t now_ns) const;
+    double dwell_left_s(std::int64_t now_ns) const { return wait_.dwell_left_s(now_ns); }
 
     /// The result of M66.
-    struct InputResult {
-        double value = 0;
-        bool timed_out = false;
-    };
-    InputResult input() const { return {input_value_, is_input_timed_out_}; }
+    ProgramWait::InputResult input() const { return wait_.input(); }
     /// Position of the first block that is not done; number 0 before the first block.
     ItemPlace place() const;
     /// Called when another program starts.
@@ -128,10 +117,7 @@ class Sequencer {
     void set_move_listener(MoveListener listener) { move_listener_ = std::move(listener); }
 
   private:
-    enum class Wait : std::uint8_t { NONE, DWELL, INPUT, TOOL, TOOL_DATA, ORIENT, USER_CODE, SETTING, LOG };
     bool isWaitOver(std::int64_t now_ns);
-    bool isInputWaitOver(std::int64_t now_ns);
-    bool isOrientWaitOver(std::int64_t now_ns);
     bool isReady(const Item &item);
     bool isStepBoundary(const Item &item);
     /// Reports a failure; nothing starts after it.
@@ -148,11 +134,6 @@ class Sequencer {
     void perform(const gcode::WaitOrientComplete &orient, std::int64_t now_ns);
     void perform(const gcode::UserCode &code);
     void perform(const gcode::ChangeTool &change);
-    /// Waits until motion has executed the setting, so that pins show it at the end of the block.
-    void wait_for_setting(motion::CommandId setting) {
-        awaited_setting_ = setting;
-        wait_ = Wait::SETTING;
-    }
 
     ItemQueue &queue_;
     MotionLink &motion_;
@@ -162,14 +143,7 @@ class Sequencer {
     SequencerSettings settings_;
     MoveListener move_listener_;
 
-    Wait wait_ = Wait::NONE;
     ExecState blocked_ = ExecState::DONE;  ///< condition for which the front item waited in the last step
-    std::int64_t deadline_ns_ = 0;         ///< end of a dwell or a timeout; 0: none
-    gcode::WaitInput awaited_input_{};
-    double input_value_ = 0, last_input_ = 0;
-    bool is_input_timed_out_ = false;
-    AwaitedOrient orient_;
-    motion::CommandId awaited_setting_ = 0;
     SentMoves sent_;
     ToolChange tool_change_;
     ProgramSpindles spindles_;
@@ -179,6 +153,7 @@ class Sequencer {
     std::uint64_t step_read_ = 0;  ///< step executed by single step; 0: none yet
     ItemPlace last_begun_;         ///< position of the last started item
     ProgramLogs logs_;
+    ProgramWait wait_;
     bool probe_made_ = false;
 };
 
