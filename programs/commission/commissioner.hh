@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "base/diagnostics/sink.hh"
 #include "machine/assembly/machine.hh"
 #include "machine/commissioning/guide.hh"
 #include "machine/commissioning/live_bench.hh"

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "machine/task/task.hh"
+
 namespace mw::programs {
 
 Recorder::Recorder(machine::Machine &machine, const machine::MachineConfig &config)

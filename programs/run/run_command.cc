@@ -14,6 +14,7 @@
 #include "machine/assembly/machine.hh"
 #include "machine/config/ini_parameters.hh"
 #include "machine/config/loaded_config.hh"
+#include "machine/task/task.hh"
 #include "machine/tools/tool_data.hh"
 #include "programs/commands.hh"
 #include "programs/run/certificate_report.hh"

@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include "base/atomic_file.hh"
+#include "base/diagnostics/sink.hh"
 #include "base/duration.hh"
 #include "base/stop_signals.hh"
+#include "machine/config/machine_config.hh"
 
 namespace mw::programs {
 namespace {

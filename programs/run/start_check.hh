@@ -8,6 +8,7 @@
 
 #include "base/diagnostics/sink.hh"
 #include "gcode/analysis/program_check.hh"
+#include "machine/config/machine_config.hh"
 
 namespace mw::programs {
 

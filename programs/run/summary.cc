@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "machine/config/machine_config.hh"
+
 namespace mw::programs {
 namespace {
 

@@ -10,10 +10,12 @@
 
 #include <fmt/format.h>
 
+#include "base/diagnostics/sink.hh"
 #include "base/language/language.hh"
 #include "base/output_relay.hh"
 #include "base/stop_signals.hh"
 #include "base/text.hh"
+#include "machine/config/machine_config.hh"
 #include "messages/client/shown_message.hh"
 
 namespace mw::programs {

@@ -17,6 +17,7 @@
 #include "clients/screen/files/filter.hh"
 #include "hal/core/instance.hh"
 #include "machine/journal/writer.hh"
+#include "machine/task/task.hh"
 #include "messages/client/shown_message.hh"
 
 namespace mw::programs {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/overloaded.hh"
+#include "machine/task/task.hh"
 
 namespace mw::programs {
 namespace {

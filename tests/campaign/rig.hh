@@ -20,6 +20,9 @@
 #include "machine/assembly/machine.hh"
 #include "machine/assembly/task_side.hh"
 #include "machine/config/loaded_config.hh"
+#include "machine/task/task.hh"
+#include "messages/client/client.hh"
+#include "motion/interface/channels.hh"
 #include "runtime/virtual_scheduler.hh"
 
 namespace mw::campaign {

@@ -11,6 +11,7 @@
 
 #include "commissioning/true_machine.hh"
 #include "drivers/mesa/board/hand_panel.hh"
+#include "hal/core/instance.hh"
 #include "machine/assembly/machine.hh"
 
 namespace mw::commissioning_campaign {

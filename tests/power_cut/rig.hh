@@ -11,9 +11,13 @@
 #include <vector>
 
 #include "base/diagnostics/sink.hh"
+#include "hal/core/instance.hh"
 #include "machine/assembly/machine.hh"
 #include "machine/config/loaded_config.hh"
 #include "machine/journal/test/torn_disk.hh"
+#include "machine/journal/writer.hh"
+#include "machine/task/task.hh"
+#include "messages/client/client.hh"
 
 namespace mw::power_cut {
 

@@ -14,8 +14,12 @@
 
 #include <gtest/gtest.h>
 
+#include "hal/core/instance.hh"
 #include "machine/assembly/machine.hh"
 #include "machine/config/loaded_config.hh"
+#include "machine/task/task.hh"
+#include "messages/client/client.hh"
+#include "motion/interface/channels.hh"
 #include "programs/run/run_session.hh"
 #include "sim/joint_judge.hh"
 

@@ -13,10 +13,14 @@
 #include <vector>
 
 #include "base/diagnostics/sink.hh"
+#include "hal/core/instance.hh"
 #include "machine/assembly/machine.hh"
 #include "machine/config/loaded_config.hh"
 #include "machine/journal/test/torn_disk.hh"
+#include "machine/journal/writer.hh"
+#include "machine/task/task.hh"
 #include "messages/client/client.hh"
+#include "motion/interface/channels.hh"
 #include "task_campaign/plan.hh"
 
 namespace mw::task_campaign {

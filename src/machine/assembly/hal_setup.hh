@@ -4,9 +4,11 @@
 
 #include <functional>
 
+#include "base/diagnostics/sink.hh"
 #include "hal/core/host.hh"
 #include "hal/script/programs.hh"
 #include "machine/assembly/machine.hh"
+#include "machine/config/machine_config.hh"
 
 namespace mw::machine {
 

@@ -5,17 +5,39 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "base/diagnostics/sink.hh"
-#include "base/ini/ini_file.hh"
 #include "base/result.hh"
-#include "hal/core/host.hh"
-#include "machine/config/machine_config.hh"
-#include "machine/task/task.hh"
-#include "messages/client/client.hh"
-#include "motion/interface/channels.hh"
+
+namespace mw::client {
+class Client;
+}
+namespace mw::diagnostics {
+class Sink;
+}
+namespace mw::hal {
+class Instance;
+}
+namespace mw::ini {
+class IniFile;
+class IniReader;
+}  // namespace mw::ini
+namespace mw::journal {
+class Writer;
+}
+namespace mw::mailbox {
+class Segment;
+}
+namespace mw::motion {
+struct Channels;
+}
+namespace mw::task {
+class Task;
+}
 
 namespace mw::machine {
+
+struct MachineConfig;
 
 /// Parts from which a machine is created. All must outlive it; `ini` has been read into `config` without
 /// errors.

@@ -8,17 +8,21 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostics/sink.hh"
 #include "hal/core/host.hh"
 #include "hal/script/programs.hh"
 #include "machine/assembly/ini_pins.hh"
 #include "machine/assembly/machine.hh"
 #include "machine/config/ini_parameters.hh"
+#include "machine/config/machine_config.hh"
 #include "machine/halui/halui.hh"
 #include "machine/io/pins.hh"
 #include "machine/journal/writer.hh"
 #include "machine/task/task.hh"
 #include "machine/tools/tool_changer.hh"
 #include "machine/tools/tool_data.hh"
+#include "messages/client/client.hh"
+#include "motion/interface/channels.hh"
 
 namespace mw::machine {
 
