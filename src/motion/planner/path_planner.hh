@@ -25,8 +25,8 @@ struct PathPlannerConfig {
     trajectory::SpeedChooser *chooser = nullptr;  ///< a planner module of a user
 };
 
-/// After a rejection or a stop, the remaining path commands of the same epoch are answered STALE until a new
-/// epoch or Enable. A path with a gap is never driven.
+/// After a rejection or a stop, the remaining path commands of the epoch are answered STALE until a new epoch
+/// or Enable. So the machine never follows a path with a gap.
 class PathPlanner {
   public:
     PathPlanner(const PathPlannerConfig &config, const kinematics::Kinematics &kinematics, Channels &channels,
@@ -79,7 +79,7 @@ class PathPlanner {
     PendingCommands pending_;
 
     PathView view_;
-    PathWindow window_;  ///< kept while there are external offsets
+    PathWindow window_;  ///< used while there are external offsets
     std::uint32_t limits_version_ = 0;
     Epoch epoch_ = 0;
     bool isBroken_ = false;  ///< the path has a gap: further commands of this epoch are rejected

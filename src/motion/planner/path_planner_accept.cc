@@ -11,7 +11,7 @@ namespace mw::motion {
 
 namespace {
 
-/// An axis that moves by less is treated as stopped [machine units, degrees].
+/// An axis that moves less than this counts as stopped [machine units, degrees].
 constexpr double LEAST_WAY = 1e-9;
 
 bool isFinite(const geometry::Pose &p) noexcept {
@@ -203,7 +203,7 @@ Reason PathPlanner::accept_tap(const PathCommand &c, const RigidTap &tap) noexce
     const trajectory::Primitive in = trajectory::make_line(planner_.end(), tap.end);
     const bool isLine = in.length > 1e-12 * (1.0 + geometry::norm(tap.end));
     for (int i = 0; i < geometry::AXIS_COUNT; ++i) {
-        // Both ends would need clearance for the reversal that offsets never use.
+        // Both ends would need clearance for the reversal that external offsets never use.
         if (in.lin[i] != 0 && ((reach_.limits().offset_axes | reach_.limits().shared.axes) >> i & 1U) != 0) {
             refused_index_ = static_cast<std::int16_t>(i);
             return Reason::TAP_OFFSET;

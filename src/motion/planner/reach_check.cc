@@ -33,7 +33,7 @@ TravelToLimit travel_to_soft_limit(const trajectory::Primitive &line, double sen
     return room;
 }
 
-/// Travel on a move of joints that external offsets move as well; 0 for other joints.
+/// Travel of joints that external offsets also move; 0 for other joints.
 JointRange shared_extent(const trajectory::Primitive &p, const SharedJoints &shared) noexcept {
     JointRange out;
     for (std::uint32_t left = shared.joints; left != 0; left &= left - 1) {
@@ -86,7 +86,7 @@ Refusal ReachCheck::check_axes(const trajectory::Primitive &p, const PoseRange &
         if (isMoving && lock >= 0 && lock != indexer) {
             return {Reason::INDEXER_ALONE, index};
         }
-        // A move from outside back inside is accepted if its end is inside.
+        // A move from outside the limits is accepted if it ends inside.
         const double from = p.start[i];
         const bool isLow = move.low[i] < std::min(room.low[i], from) - SOFT_LIMIT_ROUNDING ||
                            p.end[i] < room.low[i] - SOFT_LIMIT_ROUNDING;
@@ -99,7 +99,7 @@ Refusal ReachCheck::check_axes(const trajectory::Primitive &p, const PoseRange &
     return {};
 }
 
-/// On an arc a joint can exceed the positions that check_joints() samples. Shared joints are checked exactly.
+/// On an arc a joint can exceed the positions sampled by check_joints(). Shared joints are checked exactly.
 Refusal ReachCheck::check_shared(const trajectory::Primitive &p, const JointRange &move,
                                  const JointRange &room) const noexcept {
     const JointRange start = limits_.shared.at(p.start);
@@ -114,13 +114,13 @@ Refusal ReachCheck::check_shared(const trajectory::Primitive &p, const JointRang
     return {};
 }
 
-/// True when the joints can follow from one point of the path to the next: halves the distance until the
-/// joints change little, or so fast that the path would crawl. Joints that jump at a singular pose do so on
-/// any distance.
+/// True if the joints can move from one point of the path to the next. Halves the distance until the joints
+/// change little, or until they would have to move so fast that the path would crawl. Joints that jump at a
+/// singular pose do so at any distance.
 bool ReachCheck::isSteady(const trajectory::Primitive &p, PathSample from, PathSample to) const noexcept {
     constexpr double MUCH = 30;  // [machine units, degrees]
     constexpr double LITTLE = 1;
-    constexpr double SLOWEST = 0.005;  // of the speed of the machine
+    constexpr double SLOWEST = 0.005;  // as a fraction of the speed of the machine
     constexpr int HALVINGS = 40;
     const double wish = limits_.limits.velocity.back();
     const double slowest = wish < trajectory::UNLIMITED ? SLOWEST * wish : 0.0;
@@ -153,7 +153,7 @@ bool ReachCheck::isSteady(const trajectory::Primitive &p, PathSample from, PathS
 }
 
 Refusal ReachCheck::check_joints(const trajectory::Primitive &p, const JointRange &room) noexcept {
-    // Enough that an angle on a circle never changes by half a revolution between two samples.
+    // Sufficient for an angle on a circle not to change by half a revolution between samples.
     constexpr int LEAST_SAMPLES = 64;
     constexpr double SAMPLES_PER_RAD = 1.5;
     constexpr double MOST_SAMPLES = 20000;
@@ -175,8 +175,8 @@ Refusal ReachCheck::check_joints(const trajectory::Primitive &p, const JointRang
         const bool isOnTheWay = n < samples;
         for (int j = 0; j < num_joints_; ++j) {
             const auto i = static_cast<std::size_t>(j);
-            // A joint outside its limit, for instance after its drive was off, may come back but not go
-            // further out.
+            // A joint outside its limit, for instance after its drive was off, may move back but not further
+            // out.
             const double low = isOnTheWay ? std::min(room.low[i], begin[i]) : room.low[i];
             const double high = isOnTheWay ? std::max(room.high[i], begin[i]) : room.high[i];
             if (here.joints[i] < low - SOFT_LIMIT_ROUNDING || here.joints[i] > high + SOFT_LIMIT_ROUNDING) {
@@ -195,7 +195,7 @@ TravelToLimit ReachCheck::travel_past(const trajectory::Primitive &line, double 
     return kinematics_.identity() == nullptr ? limit_by_joints(line, sense, axes, joints, turn) : axes;
 }
 
-/// The part of the travel past an end of a line that the joints can follow. They are at `joints` there;
+/// The travel past an end of a line that the joints can follow. `joints`: their positions at that end;
 /// `turn`: travel per spindle revolution.
 TravelToLimit ReachCheck::limit_by_joints(const trajectory::Primitive &line, double sense,
                                           const TravelToLimit &axes, const Joints &joints,

@@ -16,8 +16,8 @@
 
 namespace mw::motion {
 
-/// The inverse of pure kinematics, for the planner. Of several solutions it returns the one on the side of
-/// its last joint positions.
+/// The inverse of pure kinematics for the planner. Among several solutions it returns the one with the
+/// configuration of its last joint positions.
 class KinematicsMap final : public trajectory::JointMap {
   public:
     using Joints = std::array<double, MAX_JOINTS>;
@@ -27,8 +27,8 @@ class KinematicsMap final : public trajectory::JointMap {
         near_ = joints;
         side_ = side;
     }
-    /// The joints at a pose, nearest to those in `joints`; SINGULAR also for a pose that can only be reached
-    /// through a singular one.
+    /// Finds the joints at a pose, nearest to those in `joints`. Also returns SINGULAR for a pose that can be
+    /// reached only through a singular one.
     kinematics::Status find(const geometry::Pose &pose, double *joints) const noexcept {
         const bool isBeyond = side_ != 0 && kinematics_.side(pose) != side_;
         const kinematics::Status status = kinematics_.inverse(pose, joints);

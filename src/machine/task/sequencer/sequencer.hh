@@ -85,7 +85,7 @@ class Sequencer {
     void on_tool_event(io::ToolEvent event);
     /// The pin or state that is awaited.
     Waiting waiting_for() const { return wait_.waiting_for(); }
-    /// The same as LinuxCNC's exec_state.
+    /// LinuxCNC's exec_state.
     ExecState exec_state() const { return wait_.exec_state(blocked_); }
     /// Remaining time of a dwell [s]; 0 when there is none.
     double dwell_left_s(std::int64_t now_ns) const { return wait_.dwell_left_s(now_ns); }
