@@ -13,6 +13,7 @@
 #include "base/own_place.hh"
 #include "base/short_text.hh"
 #include "base/text.hh"
+#include "base/utf8.hh"
 
 namespace mw {
 namespace {
@@ -181,6 +182,26 @@ TEST(Text, AMessageQuotesTheStartOfALongTextOnly) {
     EXPECT_EQ(short_text(std::string(1001, 'x')), std::string(300, 'x') + "...");
     EXPECT_EQ(short_text(std::string(299, 'x') + "\xc3\xa4" + std::string(1000, 'y')),
               std::string(299, 'x') + "...");
+}
+
+TEST(Utf8, FindsTheFirstCharacter) {
+    const std::pair<std::string_view, std::pair<std::size_t, char32_t>> cases[] = {
+        {"a\xC3", {1, U'a'}},
+        {"\xC3\xA4x", {2, 0xE4}},
+        {"\xE2\x82\xAC", {3, 0x20AC}},
+        {"\xF0\x9F\x94\xA9", {4, 0x1F529}},
+        {"\xC3", {0, 0}},
+        {"\xC0\xAF", {0, 0}},
+        {"\xE0\x80\x80", {0, 0}},
+        {"\xED\xA0\x80", {0, 0}},
+        {"\xF4\x90\x80\x80", {0, 0}},
+        {"\x80", {0, 0}},
+        {"\xC3(", {0, 0}}};
+    for (const auto &[text, expected] : cases) {
+        const Utf8Character found = first_character(text);
+        EXPECT_EQ(found.size, expected.first) << text;
+        EXPECT_EQ(found.code, expected.second) << text;
+    }
 }
 
 }  // namespace

@@ -1,36 +1,20 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "clients/publish/value.hh"
 
-#include <array>
+#include "base/utf8.hh"
 
 namespace mw::publish {
 namespace {
 
 constexpr std::string_view REPLACEMENT = "\xEF\xBF\xBD";
 
-/// Size of the character at the front of `text`; 0 if it is not valid. [bytes]
+/// Size of the character at the front of `text`; 0 if it is not valid, or not allowed in texts of Sparkplug.
+/// [bytes]
 std::size_t character_size(std::string_view text) {
-    const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned first = byte(0);
-    if (first < 0x80U) {
-        return first >= 0x20U || first == '\t' ? 1 : 0;
-    }
-    const std::size_t size = first >= 0xF0U ? 4 : first >= 0xE0U ? 3 : 2;
-    if (first < 0xC2U || first > 0xF4U || text.size() < size) {
-        return 0;
-    }
-    unsigned code = first & (0xFFU >> (size + 1));
-    for (std::size_t i = 1; i < size; ++i) {
-        if ((byte(i) & 0xC0U) != 0x80U) {
-            return 0;
-        }
-        code = (code << 6U) | (byte(i) & 0x3FU);
-    }
-    constexpr std::array<unsigned, 5> LEAST{0, 0, 0x80U, 0x800U, 0x10000U};
-    const bool isSurrogate = code >= 0xD800U && code <= 0xDFFFU;
-    const bool isUsable =
-        code >= LEAST[size] && code <= 0x10FFFFU && !isSurrogate && (code & 0xFFFEU) != 0xFFFEU;
-    return isUsable && code >= 0xA0U ? size : 0;
+    const Utf8Character first = first_character(text);
+    const bool isControl =
+        (first.code < 0x20U && first.code != '\t') || (first.code >= 0x80U && first.code < 0xA0U);
+    return isControl || (first.code & 0xFFFEU) == 0xFFFEU ? 0 : first.size;
 }
 
 }  // namespace
