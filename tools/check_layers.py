@@ -34,10 +34,10 @@ ORDER = {
     'motion': ('homing', 'interface', 'planner', 'servo', 'hal'),
     'machine': ('setup', 'commissioning', 'io', 'journal', 'task', 'config', 'certificate', 'tools', 'halui', 'assembly'),
     'machine/task': ('link', 'sequencer', 'states', 'run', 'control'),
-    'clients': ('nml', 'rsh', 'schedule', 'tcl', 'screen', 'publish', 'shop', 'python'),
+    'clients': ('nml', 'rsh', 'schedule', 'tcl', 'offers', 'screen', 'publish', 'shop', 'python'),
     'clients/screen': ('http', 'access', 'server', 'facts', 'status', 'hal', 'path', 'files', 'session', 'setup', 'routes', 'assembly'),
-    'clients/publish': ('', 'sparkplug', 'mtconnect', 'assembly'),
-    'clients/shop': ('', 'host', 'store', 'notify', 'web', 'assembly'),
+    'clients/publish': ('', 'sparkplug', 'mtconnect', 'offers', 'assembly'),
+    'clients/shop': ('', 'host', 'offers', 'store', 'notify', 'web', 'assembly'),
     'clients/nml': ('config', 'message', 'buffer', 'net', 'bridge', 'remote'),
     'drivers/mesa': ('lbp16', 'identity', 'hostmot2', 'ethernet', 'direct', 'board', 'virtual', 'hm2_eth', 'pci', 'epp', 'spi'),
     'programs': ('setup', 'run', 'remote', 'publish', 'shop', 'start', 'screen', 'doctor', 'commission', 'mains'),
@@ -56,6 +56,9 @@ NEVER = {
     **{f'clients/{client}': ('machine',) for client in ('nml', 'rsh', 'schedule', 'tcl', 'python')},
     **{f'clients/screen/{folder}': ('machine', 'hal', 'messages/client') for folder in ('http', 'access', 'server')},
     **{f'clients/screen/{folder}': ('machine',) for folder in ('facts', 'status', 'hal', 'files', 'session', 'routes')},
+    # An offer is a text, with which nothing can reach a machine.
+    'clients/offers': ('runtime', 'hal', 'gcode', 'messages', 'machine'),
+    'clients/publish/offers': ('hal', 'gcode', 'messages', 'machine'),
     # A publisher reads a machine and cannot command it.
     'clients/publish': ('hal', 'machine', 'messages/client/client.hh', 'messages/mailbox/command_server.hh', 'messages/declarations/command.hh'),
     'programs/publish': ('messages/client/client.hh', 'messages/declarations/command.hh', 'machine', 'motion'),

@@ -19,7 +19,7 @@ import sys
 FOLDERS = ('src/base/ini', 'src/base/options', 'src/runtime', 'src/messages/client', 'src/messages/mailbox', 'src/hal/core', 'src/hal/capi', 'src/hal/host',
            'src/hal/halcompile', 'src/hal/script', 'src/hal/tools', 'src/kinematics', 'src/gcode/syntax', 'src/gcode/interpreter', 'src/gcode/tools',
            'src/gcode/analysis/commands.cc', 'src/gcode/analysis/program_check.cc', 'src/gcode/analysis/time_estimate.cc', 'src/motion', 'src/machine/io', 'src/machine/journal', 'src/machine/commissioning', 'src/machine/task', 'src/machine/config',
-           'src/machine/certificate', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/link_section.cc', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'src/clients/shop',
+           'src/machine/certificate', 'src/machine/tools', 'src/machine/assembly', 'src/clients/publish/assembly/link_section.cc', 'src/clients/publish/assembly/settings.cc', 'src/clients/publish/sparkplug', 'src/clients/publish/offers', 'src/clients/offers', 'src/clients/screen/files/offered_programs.cc', 'src/clients/shop',
            'src/clients/screen/access/remote_access.cc', 'src/clients/screen/assembly', 'src/clients/screen/facts/tabs.cc', 'src/clients/screen/files/filter.cc',
            'src/clients/screen/hal/dialog_facts.cc', 'src/clients/screen/hal/postgui.cc', 'src/clients/screen/path/path_readers.cc', 'programs', 'drivers/modbus', 'drivers/mesa/board/hm2_board.cc', 'drivers/mesa/ethernet/cycle_report.cc')
 # Programs that print for other programs: people read only their help.

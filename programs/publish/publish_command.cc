@@ -133,6 +133,18 @@ void run_node(const Settings &settings, LiveData &data, const std::atomic<bool> 
     node.end({utc_ms(), steady_s()});
 }
 
+void run_offers(const Settings &settings, offers::OfferBox &box, const std::atomic<bool> &isEnded) {
+    LinkSettings own = *settings.link;
+    own.client_id += "/offers";
+    MosquittoLink link(own);
+    OfferSession session(*settings.offers, box, link, [](const std::string &what) { language::tell(what); });
+    while (!isEnded) {
+        link.wait(BROKER_TICK);
+        session.step({utc_ms(), steady_s()});
+    }
+    session.end();
+}
+
 void run_agent(screen::Server &server, const mtconnect::Agent &agent, const std::atomic<bool> &isEnded) {
     mtconnect::Service service(agent, {utc_ms, steady_s});
     bool isStreaming = false;
@@ -223,9 +235,20 @@ Result<> publish_machine(const PublishWords &words, const Settings &settings, co
                    remote != 0 ? remote : server->port());
     }
     std::fflush(stdout);
-    std::optional<Worker> node, door;
+    std::optional<offers::OfferBox> box;
+    if (settings.offers.has_value()) {
+        auto opened = offers::OfferBox::open(settings.offers_folder());
+        if (!opened.has_value()) {
+            return std::unexpected(opened.error());
+        }
+        box.emplace(std::move(*opened));
+    }
+    std::optional<Worker> node, desk, door;
     if (data.has_value()) {
         node.emplace([&](const std::atomic<bool> &isEnded) { run_node(settings, *data, isEnded); });
+    }
+    if (box.has_value()) {
+        desk.emplace([&](const std::atomic<bool> &isEnded) { run_offers(settings, *box, isEnded); });
     }
     if (agent.has_value()) {
         door.emplace([&](const std::atomic<bool> &isEnded) { run_agent(*server, *agent, isEnded); });

@@ -20,6 +20,7 @@
 #include "hal/core/instance.hh"
 #include "programs/command_words.hh"
 #include "programs/commands.hh"
+#include "programs/screen/ui_offers.hh"
 #include "programs/setup/first_steps.hh"
 #include "programs/setup/ui_browser.hh"
 #include "programs/start/side_programs.hh"
@@ -130,6 +131,7 @@ int serve(const UiWords &words, const machine::LoadedConfig &loaded, diagnostics
         return 1;
     }
     screen::ApiSetup setup = screen::api_setup(options_of(words), loaded, sink);
+    setup.offers_folder = offers_folder(loaded.ini);
     auto server = screen::Server::listen(
         {.port = words.port,
          .limits = {},

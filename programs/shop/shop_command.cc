@@ -18,10 +18,13 @@
 #include "base/stop_signals.hh"
 #include "base/text.hh"
 #include "clients/publish/assembly/settings.hh"
+#include "clients/screen/access/secrets.hh"
 #include "clients/screen/server/server.hh"
 #include "clients/shop/assembly/collector.hh"
 #include "clients/shop/assembly/settings.hh"
 #include "clients/shop/notify/notifier.hh"
+#include "clients/shop/offers/offer_desk.hh"
+#include "clients/shop/store/offer_store.hh"
 #include "clients/shop/web/shop_page.hh"
 #include "programs/command_words.hh"
 
@@ -30,9 +33,12 @@ namespace {
 
 using namespace shop;
 
-constexpr auto TICK = std::chrono::milliseconds(20), HTTP_TICK = std::chrono::milliseconds(100);
+constexpr auto TICK = std::chrono::milliseconds(20), OFFER_TICK = std::chrono::milliseconds(50),
+               HTTP_TICK = std::chrono::milliseconds(100);
 /// Maximum wait at the end for a batch that the database has not committed.
 constexpr double END_S = 5;
+/// Interval of attempts to connect to the database. [s]
+constexpr double OPEN_S = 1;
 
 struct ShopWords {
     std::string ini;
@@ -43,8 +49,9 @@ struct ShopWords {
         options::CommandLine line(
             "millwright shop SHOP.ini [--check]",
             "Stores the values that 'millwright publish' sends from all machines of a shop in PostgreSQL, as "
-            "section [SHOP] sets,\nserves a page of the machines, and sends notifications. It cannot command "
-            "a "
+            "section [SHOP] sets,\nserves a page of the machines, and sends notifications. It offers "
+            "programs to "
+            "operators and cannot command a "
             "machine. Ends at SIGINT or SIGTERM.\n");
         line.flag("--check", "check the section and exit", isCheck);
         line.rest(rest);
@@ -75,17 +82,45 @@ void report(const std::string &what) {
     language::tell(what);
 }
 
+/// The port for other computers: read-only, or with TLS and tokens.
+Result<screen::RemoteDoor> remote_door(const PagePort &port, const std::optional<screen::Tokens> &tokens) {
+    std::vector<std::string> names = port.names;
+    const std::string own = to_lower(publish::this_computer().host);
+    names.insert(names.end(), {own, own + ".local"});
+    if (!tokens.has_value()) {
+        return screen::RemoteDoor{port.address, port.port, names,
+                                  screen::Access(screen::Protection::NONE, screen::Role::STATUS),
+                                  std::nullopt};
+    }
+    std::vector<std::string> certified = names;
+    certified.push_back(port.address);
+    auto certificate = screen::read_or_make_certificate(port.secrets, certified);
+    if (!certificate.has_value()) {
+        return std::unexpected(certificate.error());
+    }
+    return screen::RemoteDoor{port.address, port.port, names, screen::Access(*tokens),
+                              std::move(*certificate)};
+}
+
 Result<std::unique_ptr<screen::Server>> listen(const PagePort &port) {
     screen::ServerOptions options;
+    options.limits.body_bytes = MOST_REQUEST_BYTES;
+    std::optional<screen::Tokens> tokens;
+    if (!port.secrets.empty()) {
+        auto found = screen::Tokens::read_or_make(port.secrets + "/tokens");
+        if (!found.has_value()) {
+            return std::unexpected(found.error());
+        }
+        tokens = options.local_tokens = std::move(*found);
+    }
     options.port = port.address.empty() ? port.port : 0;
     options.limits.foreign_connections = options.limits.connections;
     if (!port.address.empty()) {
-        std::vector<std::string> names = port.names;
-        const std::string own = to_lower(publish::this_computer().host);
-        names.insert(names.end(), {own, own + ".local"});
-        options.remote =
-            screen::RemoteDoor{port.address, port.port, names,
-                               screen::Access(screen::Protection::NONE, screen::Role::STATUS), std::nullopt};
+        auto door = remote_door(port, tokens);
+        if (!door.has_value()) {
+            return std::unexpected(door.error());
+        }
+        options.remote = std::move(*door);
     }
     return screen::Server::listen(options);
 }
@@ -113,6 +148,49 @@ class PageThread {
     std::thread thread_;
 };
 
+/// Offers have a separate connection and thread, so that a large program delays no values.
+class OfferThread {
+  public:
+    explicit OfferThread(const Settings &settings) : thread_([this, settings] { run(settings); }) {}
+    ~OfferThread() {
+        isEnded_ = true;
+        thread_.join();
+    }
+    void ask_to_end() { isEnded_ = true; }
+    /// False while it waits for the database.
+    bool hasEnded() const { return hasEnded_; }
+    OfferThread(const OfferThread &) = delete;
+    OfferThread &operator=(const OfferThread &) = delete;
+
+  private:
+    void run(const Settings &settings) {
+        publish::LinkSettings own = settings.link;
+        own.client_id += "/offers";
+        publish::MosquittoLink link(own);
+        OfferStore store(settings.store.database, settings.host.name);
+        OfferDesk desk(
+            {.name = settings.host.name, .groups = settings.host.groups, .brokers = own.brokers.size()}, link,
+            store, report);
+        double open_s = now().at_s;
+        while (!isEnded_) {
+            link.wait(OFFER_TICK);
+            if (store.isOpen()) {
+                desk.step(now().at_s);
+            } else if (now().at_s >= open_s) {
+                // The collector reports a database that does not answer.
+                desk.end();
+                static_cast<void>(store.open());
+                open_s = now().at_s + OPEN_S;
+            }
+        }
+        desk.end();
+        hasEnded_ = true;
+    }
+
+    std::atomic<bool> isEnded_{false}, hasEnded_{false};
+    std::thread thread_;
+};
+
 Result<> collect(const Settings &settings) {
     std::optional<PageThread> page;
     if (settings.page.has_value()) {
@@ -127,6 +205,7 @@ Result<> collect(const Settings &settings) {
     }
     publish::MosquittoLink link(settings.link);
     StoreThread store(settings.store, report);
+    OfferThread offers(settings);
     std::optional<Notifier> notifier;
     if (settings.notify.isUsed()) {
         notifier.emplace(settings.store.database, settings.notify, report);
@@ -137,8 +216,9 @@ Result<> collect(const Settings &settings) {
         collector.step(now());
     }
     collector.end();
+    offers.ask_to_end();
     const double end_s = now().at_s + END_S;
-    while (store.state() == StoreThread::State::BUSY) {
+    while (store.state() == StoreThread::State::BUSY || !offers.hasEnded()) {
         if (now().at_s > end_s) {
             report("The database does not answer. The program ends. The machines store their values.");
             std::fflush(nullptr);

@@ -25,6 +25,7 @@ inline constexpr auto PUBLISH_KEYS = std::to_array<ini::IniKey>({
     ini::ini_whole("PUBLISH", "KEEPALIVE", "s", 30, {5, 3600}, "interval of signs of life to the broker"),
     ini::ini_text("PUBLISH", "STORE", "folder of values that wait for the broker; without it $XDG_STATE_HOME/millwright/publish/DEVICE, or below ~/.local/state"),
     ini::ini_number("PUBLISH", "STORE_SIZE", "MB", 64, {1, 1e6}, "disk space of STORE; the oldest values are dropped when it is exceeded"),
+    ini::ini_flag("PUBLISH", "OFFERS", false, "receives programs that PRIMARY_HOST offers; an operator accepts them at the screen"),
     ini::ini_number("PUBLISH", "INTERVAL", "s", 0.1, {0.01, 3600}, "period in which values are read"),
     ini::ini_list("PUBLISH", "DEADBAND", "NAME VALUE: smallest change of a metric that is published, in its unit; # in NAME as in the reference page"),
     ini::ini_whole("PUBLISH", "MTCONNECT_PORT", "", -1, {-1, 65535}, "TCP port of the MTConnect agent; 0: a free one; without it there is no agent"),

@@ -43,6 +43,7 @@ class SectionReader {
         read_deadbands(settings.deadbands);
         read_link(settings);
         read_store(settings);
+        read_offers(settings);
         read_agent(settings);
         const bool hasBroker = reader_.find(KEY<"BROKER">) != nullptr;
         if (!hasBroker && !settings.agent_port.has_value()) {
@@ -129,6 +130,21 @@ class SectionReader {
             sink_.error("No home folder found to store values until the broker answers.", place(KEY<"STORE">),
                         "set [PUBLISH]STORE");
         }
+    }
+    void read_offers(Settings &settings) {
+        if (!reader_.boolean(KEY<"OFFERS">)) {
+            return;
+        }
+        const NodeSettings &node = settings.node;
+        if (!settings.link.has_value() || node.primary_host.empty()) {
+            sink_.error("OFFERS of [PUBLISH] needs BROKER and PRIMARY_HOST.", place(KEY<"OFFERS">));
+            return;
+        }
+        settings.offers = OfferSettings{.host = node.primary_host,
+                                        .group = node.group,
+                                        .node = node.node,
+                                        .device = node.device,
+                                        .brokers = node.brokers};
     }
     void read_agent(Settings &settings) {
         settings.agent.device = settings.node.device;

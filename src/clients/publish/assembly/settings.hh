@@ -8,6 +8,7 @@
 #include "base/diagnostics/sink.hh"
 #include "base/ini/ini_file.hh"
 #include "clients/publish/mtconnect/agent.hh"
+#include "clients/publish/offers/offer_session.hh"
 #include "clients/publish/readings.hh"
 #include "clients/publish/sparkplug/data_log.hh"
 #include "clients/publish/sparkplug/edge_node.hh"
@@ -28,8 +29,11 @@ struct Settings {
     LogLimits store_limits;
     double interval_s = 0.1;
     Deadbands deadbands;
+    std::optional<OfferSettings> offers;  ///< nothing: no offers are received
     std::optional<AgentPort> agent_port;  ///< nothing: no agent
     mtconnect::AgentSettings agent;
+
+    std::string offers_folder() const { return store + "/offers"; }
 };
 
 /// Data about this computer.

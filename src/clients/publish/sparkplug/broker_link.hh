@@ -36,7 +36,8 @@ class BrokerLink {
     BrokerLink &operator=(const BrokerLink &) = delete;
     virtual ~BrokerLink() = default;
 
-    /// Begins to connect to a broker of the configured list, with a clean session.
+    /// Begins to connect to a broker of the configured list, with a clean session. A will without a topic is
+    /// none.
     virtual void connect(std::size_t broker, const Publication &will) = 0;
     /// Subscribes with QoS 1.
     virtual void subscribe(const std::string &topic) = 0;

@@ -103,8 +103,11 @@ Result<> MosquittoLink::begin(std::size_t broker, const Publication &will) {
     mosquitto_unsubscribe_callback_set(client_, on_unsubscribe);
     mosquitto_int_option(client_, MOSQ_OPT_PROTOCOL_VERSION, MQTT_PROTOCOL_V311);
     mosquitto_int_option(client_, MOSQ_OPT_TCP_NODELAY, 1);
-    int code = mosquitto_will_set(client_, will.topic.c_str(), static_cast<int>(will.payload.size()),
+    int code = MOSQ_ERR_SUCCESS;
+    if (!will.topic.empty()) {
+        code = mosquitto_will_set(client_, will.topic.c_str(), static_cast<int>(will.payload.size()),
                                   will.payload.data(), will.qos, will.isRetained);
+    }
     if (code == MOSQ_ERR_SUCCESS && !settings_.user.empty()) {
         code = mosquitto_username_pw_set(client_, settings_.user.c_str(), or_null(settings_.password));
     }

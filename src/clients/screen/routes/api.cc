@@ -22,8 +22,8 @@
 namespace mw::screen {
 namespace {
 
-constexpr std::string_view API = "/api/", FILES = "/api/files/", HAL = "/api/hal/", SCOPE = "/api/scope",
-                           INPUTS = "/api/inputs";
+constexpr std::string_view API = "/api/", FILES = "/api/files/", OFFERS = "/api/offers", HAL = "/api/hal/",
+                           SCOPE = "/api/scope", INPUTS = "/api/inputs";
 
 /// Data that a screen needs to show the status of the machine.
 constexpr std::array<std::string_view, 4> OF_STATUS{"/api/icon", "/api/machine", "/api/schema", "/api/tools"};
@@ -54,7 +54,7 @@ std::optional<std::uint64_t> number(const Request &request, const char *name) {
 Api::Api(Sockets &sockets, const Threads &threads, ApiSetup setup, Clock clock)
     : threads_(threads), setup_(std::move(setup)), clock_(std::move(clock)),
       screens_(sockets, setup_.screens), files_(setup_.facts.program_prefix, setup_.facts.program_extensions),
-      keepsakes_(setup_.facts), log_(setup_.facts.files.log),
+      offers_(setup_.offers_folder, files_), keepsakes_(setup_.facts), log_(setup_.facts.files.log),
       hal_(setup_.connect_hal, setup_.dialogs, setup_.begin_hal), hasHalBegun_(setup_.begin_hal == nullptr) {
     if (!setup_.facts.files.log.empty()) {
         screens_.keep_log([this](const std::string &line, std::int64_t age_ns) { write_log(line, age_ns); });
@@ -195,6 +195,10 @@ void Api::answer(const Request &request, Reply reply) {
     if (isKeepsake(request, reply)) {
         return;
     }
+    if (path.starts_with(OFFERS)) {
+        answer_offers(request, std::move(reply));
+        return;
+    }
     if (path == "/api/files" || path.starts_with(FILES)) {
         answer_files(request, path.size() > FILES.size() ? path.substr(FILES.size()) : "", std::move(reply));
         return;
@@ -247,6 +251,29 @@ void Api::answer_files(const Request &request, const std::string &name, Reply re
     } else {
         reply(wrong_method(request));
     }
+}
+
+void Api::answer_offers(const Request &request, Reply reply) {
+    const std::string id =
+        request.path.size() > OFFERS.size() + 1 ? request.path.substr(OFFERS.size() + 1) : "";
+    if (request.method == "GET") {
+        threads_.disk.run([this, id] { return id.empty() ? offers_.list() : offers_.read(id); },
+                          std::move(reply));
+        return;
+    }
+    if (request.method != "POST" || id.empty()) {
+        reply(wrong_method(request));
+        return;
+    }
+    ProgramUse use;
+    if (const messages::MachineStatus *const status = screens_.status(); status != nullptr) {
+        use = {status->task.interp_state != messages::InterpState::IDLE, status->task.program.str()};
+    }
+    threads_.disk.run(
+        [this, id, use, body = request.body, by = Requester{request.address, request.role}] {
+            return offers_.decide(id, body, by, use);
+        },
+        std::move(reply));
 }
 
 namespace {

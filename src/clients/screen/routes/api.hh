@@ -9,6 +9,7 @@
 
 #include "clients/screen/files/files.hh"
 #include "clients/screen/files/message_log.hh"
+#include "clients/screen/files/offered_programs.hh"
 #include "clients/screen/files/user_files.hh"
 #include "clients/screen/hal/hal_service.hh"
 #include "clients/screen/http/background_jobs.hh"
@@ -35,6 +36,7 @@ struct ApiSetup {
     HalService::Connect connect_hal;
     std::vector<DialogFacts> dialogs{};
     HalService::Begin begin_hal{};
+    std::string offers_folder{};  ///< for OfferedPrograms
 };
 
 /// Threads for blocking work, so that one does not wait for the other; both end before the Api.
@@ -71,6 +73,7 @@ class Api final : public Application {
   private:
     void answer_files(const Request &request, const std::string &name, Reply reply);
     void write_file(const Request &request, const std::string &name, Reply reply);
+    void answer_offers(const Request &request, Reply reply);
     void write_log(const std::string &line, std::int64_t age_ns);
     bool isKeepsake(const Request &request, Reply &reply);
     Role needed_role(const Request &request) const;
@@ -91,7 +94,8 @@ class Api final : public Application {
     ApiSetup setup_;
     Clock clock_;
     Screens screens_;
-    ProgramFiles files_;  ///< used only by jobs
+    ProgramFiles files_;      ///< used only by jobs
+    OfferedPrograms offers_;  ///< used only by jobs
     UserFiles keepsakes_;
     MessageLog log_;                     ///< used only by jobs
     std::vector<std::string> operable_;  ///< HAL names that operators may set by panels

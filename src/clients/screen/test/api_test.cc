@@ -40,6 +40,7 @@ class ApiTest : public testing::Test {
         setup.facts.tabs = {{"Door", "", Tab::Kind::PANEL,
                              R"({"parts": [{"kind": "switch", "label": "Door", "name": "door"}]})"}};
         setup.screen_folder = (folder / "web").string();
+        setup.offers_folder = (folder / "offers").string();
         setup.screens.connect = [this] { return client::Client::join(task.memory.segment()); };
         setup.read_times = [this](const std::string &, const TimeOverrides &at,
                                   const Requester &) -> Result<std::shared_ptr<PieceQueue>> {
@@ -212,6 +213,33 @@ TEST_F(ApiTest, PagesFiguresAndWhatThereIsNot) {
     EXPECT_NE(ask("GET", "/metrics").body.find("\nmillwright_machine_up 1\n"), std::string::npos);
 }
 
+/// A decision about an offer sends no command to the machine, and needs a machine that runs no program.
+TEST_F(ApiTest, AnOfferIsAcceptedWithoutACommand) {
+    offers::Offer offer{.id = "0d9b0f6e-6f3f-4c39-9b53-2f6c5d2f3a10",
+                        .from = "Eva",
+                        .note = {},
+                        .parts = 1,
+                        .sha256 = {},
+                        .files = {{"part.ngc", "M2\n"}}};
+    offer.sha256 = offers::sha256_of(offer.files);
+    ASSERT_TRUE(offers::OfferBox::open((folder / "offers").string()).value().take(offer, 1).has_value());
+    const std::string target = "/api/offers/" + offer.id, accept = R"({"decision": "accept"})";
+    const auto show = [this](messages::InterpState state) {
+        task.status->task.interp_state = state;
+        task.cycle();
+        for (int i = 0; i < 1000; ++i) {  // each advances the clock
+            api->tick();
+        }
+    };
+    show(messages::InterpState::PAUSED);
+    EXPECT_EQ(ask("POST", target, accept).status, 409);
+    show(messages::InterpState::IDLE);
+    EXPECT_EQ(ask("POST", target, accept).status, 200);
+    EXPECT_TRUE(fs::exists(folder / "part.ngc"));
+    EXPECT_TRUE(task.cycle().empty()) << "no command";
+    EXPECT_EQ(Json::parse(ask("GET", "/api/offers").body)["offers"][0]["state"], "accepted");
+}
+
 /// The table of docs/reference/api.md, Who may: each row is a request and the minimum role that it needs.
 TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable) {
     struct Row {
@@ -225,6 +253,10 @@ TEST_F(ApiTest, EachRequestNeedsTheRoleOfTheTable) {
         {"GET", "/api/tools", "", Role::STATUS},
         {"GET", "/api/files", "", Role::VIEW},
         {"GET", "/api/files/a.ngc", "", Role::VIEW},
+        {"GET", "/api/offers", "", Role::VIEW},
+        {"GET", "/api/offers/00000000-0000-4000-8000-000000000000", "", Role::VIEW},
+        {"POST", "/api/offers/00000000-0000-4000-8000-000000000000", R"({"decision": "accept"})",
+         Role::OPERATE},
         {"GET", "/api/path?file=a.ngc", "", Role::VIEW},
         {"GET", "/api/times?file=a.ngc", "", Role::VIEW},
         {"GET", "/api/offsets", "", Role::VIEW},

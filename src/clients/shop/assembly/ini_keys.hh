@@ -25,6 +25,7 @@ inline constexpr auto SHOP_KEYS = std::to_array<ini::IniKey>({
     ini::ini_whole("SHOP", "PORT", "", -1, {-1, 65535}, "TCP port of the shop page; 0: a free one; without it there is no page"),
     ini::ini_text("SHOP", "LISTEN", "address at which other computers reach the page, 0.0.0.0: all; without it only this computer"),
     ini::ini_list("SHOP", "LISTEN_NAME", "name by which other computers call this one, beside its own"),
+    ini::ini_text("SHOP", "SECRETS", "folder of tokens and certificate: with it the page for other computers needs TLS and a token"),
     ini::ini_text("SHOP", "MAIL_SERVER", "smtp://HOST:PORT or smtps://HOST:PORT of the mail server"),
     ini::ini_text("SHOP", "MAIL_FROM", "sender of mails"),
     ini::ini_list("SHOP", "MAIL_TO", "receiver of a mail for each alarm and each machine that stops"),

@@ -100,7 +100,11 @@ std::optional<Settings> read_settings(const ini::IniFile &file, diagnostics::Sin
                       .keep_days = static_cast<int>(reader.integer(KEY<"KEEP_DAYS">))};
     const std::int64_t port = reader.integer(KEY<"PORT">);
     if (port >= 0) {
-        settings.page = {static_cast<int>(port), reader.text(KEY<"LISTEN">), {}};
+        const std::string secrets = reader.text(KEY<"SECRETS">);
+        settings.page = {static_cast<int>(port),
+                         reader.text(KEY<"LISTEN">),
+                         {},
+                         secrets.empty() ? "" : file.resolve_path(secrets)};
         for (const std::string &name : words(reader, KEY<"LISTEN_NAME">)) {
             settings.page->names.push_back(to_lower(name));
         }

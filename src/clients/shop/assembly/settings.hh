@@ -19,6 +19,7 @@ struct PagePort {
     int port = 0;
     std::string address;  ///< empty: only this computer
     std::vector<std::string> names;
+    std::string secrets;  ///< folder; empty: other computers read the page without a token
 };
 
 struct Settings {

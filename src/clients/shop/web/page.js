@@ -42,10 +42,76 @@ function machineRow(machine, sums, now) {
   line.cells[5].className = 'alarms';
   return line;
 }
-async function get(path) {
-  const answer = await fetch(path, { cache: 'no-store' });
+async function result(answer) {
+  if (answer.status === 403) part('login').hidden = false;
   if (!answer.ok) throw new Error(await answer.text());
   return answer.json();
+}
+const get = async (path) => result(await fetch(path, { cache: 'no-store' }));
+const post = async (path, body) => result(await fetch(path, { method: 'POST', body: JSON.stringify(body) }));
+// A file in another encoding is not changed silently.
+async function textOf(file) {
+  try {
+    return { name: file.name, text: new TextDecoder('utf-8', { fatal: true, ignoreBOM: true }).decode(await file.arrayBuffer()) };
+  } catch {
+    throw new Error(`${file.name} is not text in UTF-8.`);
+  }
+}
+// A request that is repeated after a lost answer has the same number, so it has no effect.
+let request = null;
+async function offerProgram(event) {
+  event.preventDefault();
+  try {
+    request ??= crypto.randomUUID();
+    const files = await Promise.all([...part('program').files, ...part('subroutines').files].map(textOf));
+    const machines = [...part('targets').selectedOptions].map((option) => Number(option.value));
+    await post('offers', { request, machines, files, from: part('person').value, note: part('note').value, parts: Number(part('parts').value) });
+    localStorage.setItem('person', part('person').value);
+    request = null;
+    part('offered').textContent = `${files[0].name} is offered.`;
+    await showOffers();
+  } catch (error) {
+    part('offered').textContent = error.message;
+  }
+}
+async function withdraw(offer) {
+  try {
+    await post('offers/withdraw', { id: offer.id, by: part('person').value || offer.sender });
+    await showOffers();
+  } catch (error) {
+    part('offered').textContent = error.message;
+  }
+}
+function stateOfOffer(offer) {
+  const isEnded = offer.ended !== null;
+  const isAsked = offer.withdrawn !== null && !isEnded;
+  const state = isAsked ? 'withdrawn, not yet confirmed by the machine' : offer.state;
+  const at = isAsked ? offer.withdrawn : offer.ended ?? offer.received ?? offer.sent;
+  const by = offer.state === 'withdrawn' || isAsked ? offer.withdrawn_by : offer.ended_by;
+  return `${state}, ${time(at)}${by ? `, ${by}` : ''}${offer.reason ? `: ${offer.reason}` : ''}`;
+}
+function offerRow(offer) {
+  const button = document.createElement('button');
+  button.textContent = 'Withdraw';
+  button.onclick = () => withdraw(offer);
+  const isOpen = offer.ended === null && offer.withdrawn === null;
+  const size = `${(offer.bytes / 1000).toFixed(1)} kB`;
+  return row([time(offer.sent), offer.machine, offer.name, offer.parts || '–', size, offer.note, offer.sender, stateOfOffer(offer), isOpen ? button : ''], [3, 4]);
+}
+async function showOffers() {
+  part('offers').replaceChildren(...(await get('offers')).offers.map(offerRow));
+}
+function showTargets(machines) {
+  const names = machines.map((machine) => `${machine.id} ${machine.group}/${machine.node}/${machine.device}`);
+  if (part('targets').dataset.names === names.join()) return;
+  part('targets').dataset.names = names.join();
+  part('targets').replaceChildren(...machines.map((machine, i) => new Option(names[i].slice(names[i].indexOf(' ') + 1), machine.id)));
+}
+async function signIn(event) {
+  event.preventDefault();
+  const answer = await fetch('api/login', { method: 'POST', body: JSON.stringify({ token: part('token').value }) });
+  part('login').hidden = answer.ok;
+  part('problem').textContent = answer.ok ? '' : 'Access denied.';
 }
 async function showHistory(machine) {
   part('chosen').textContent = `${machine.group}/${machine.node}/${machine.device}, ${DAYS} days`;
@@ -65,6 +131,8 @@ async function refresh() {
     const shop = await get('machines');
     const sums = await get('machines/sums');
     part('machines').replaceChildren(...shop.machines.map((machine) => machineRow(machine, sums.machines[machine.id] ?? {}, shop.at)));
+    showTargets(shop.machines);
+    await showOffers();
     part('shift').textContent = sums.shift ? `– shift ${sums.shift}` : '';
     part('problem').textContent = '';
   } catch (error) {
@@ -72,4 +140,8 @@ async function refresh() {
   }
   setTimeout(refresh, PERIOD_MS);
 }
+part('person').value = localStorage.getItem('person') ?? '';
+part('offer').onsubmit = offerProgram;
+part('offer').oninput = () => (request = null);
+part('login').onsubmit = signIn;
 refresh();

@@ -25,7 +25,7 @@ screen::Response plain(int status, std::string text) {
 }  // namespace
 
 ShopPage::ShopPage(std::string database, std::function<double()> steady_s)
-    : name_(std::move(database)), steady_s_(std::move(steady_s)) {}
+    : name_(database), offers_(std::move(database)), steady_s_(std::move(steady_s)) {}
 
 Result<std::string> ShopPage::ask(const std::string &sql, std::span<const Parameter> parameters) {
     if (!database_.has_value()) {
@@ -79,7 +79,12 @@ screen::Response ShopPage::history(const screen::Request &request) {
 }
 
 void ShopPage::answer(const screen::Request &request, screen::Reply reply) {
-    if (request.method != "GET") {
+    const bool isPart = request.path == "/" || request.path == "/page.css" || request.path == "/page.js";
+    if (request.role == screen::Role::NOBODY && !isPart) {
+        reply(plain(403, "Sign in with a token.\n"));
+    } else if (request.path == "/offers" || request.path.starts_with("/offers/")) {
+        reply(offers_.answer(request));
+    } else if (request.method != "GET") {
         reply(plain(405, "The page is read-only: only GET requests are possible.\n"));
     } else if (request.path == "/") {
         reply({.type = "text/html; charset=utf-8", .body = std::string(PAGE_HTML)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The page of all machines. It reads the database and writes nothing.
+// The page of all machines. It reads the database, and writes only offers.
 #pragma once
 
 #include <functional>
@@ -8,6 +8,7 @@
 
 #include "clients/screen/http/http_types.hh"
 #include "clients/shop/store/database.hh"
+#include "clients/shop/web/offer_page.hh"
 
 namespace mw::shop {
 
@@ -18,7 +19,7 @@ class ShopPage final : public screen::Application {
     ShopPage(std::string database, std::function<double()> steady_s);
 
     /// GET / : the page. GET /machines: states of all machines. GET /machines/sums: their current shift. GET
-    /// /machines/history?machine=ID&days=N: one machine.
+    /// /machines/history?machine=ID&days=N: one machine. /offers: see OfferPage.
     void answer(const screen::Request &request, screen::Reply reply) override;
     void opened(screen::SessionId, screen::Role, screen::Protection) override {}
     void received(screen::SessionId, std::string_view) override {}
@@ -37,6 +38,7 @@ class ShopPage final : public screen::Application {
     Result<std::string> ask(const std::string &sql, std::span<const Parameter> parameters = {});
 
     std::string name_;
+    OfferPage offers_;
     std::function<double()> steady_s_;
     std::optional<Database> database_;
     Kept machines_{.sql = "SELECT page_machines()", .fresh_s = 1};
