@@ -18,11 +18,11 @@ from publish_shop import Broker, free_port, wait_for
 
 USERS = ('shop', 'cell', 'other')
 BIRTH, DATA, COMMAND = 'spBv1.0/g/NBIRTH/cell', 'spBv1.0/g/DDATA/cell/Mill', 'spBv1.0/g/NCMD/cell'
-REPORT, OFFER = 'millwright/report/shop/g/cell/Mill', 'millwright/offer/shop/g/cell/Mill'
+REPORT, COPY, OFFER = 'millwright/report/shop/g/cell/Mill', 'millwright/copy/shop/g/cell/Mill', 'millwright/offer/shop/g/cell/Mill'
 STATE, RECEIPT, DEVICE_COMMAND = 'spBv1.0/STATE/shop', 'millwright/stored/shop/g/cell', 'spBv1.0/g/DCMD/cell/Mill'
 # The messages that a user receives: (topic, publisher). Each user publishes to each topic.
 RECEIVED = {
-    'shop': {(BIRTH, 'cell'), (DATA, 'cell'), (COMMAND, 'cell'), (COMMAND, 'shop'), (STATE, 'shop'), (DEVICE_COMMAND, 'cell'), (REPORT, 'cell')},
+    'shop': {(BIRTH, 'cell'), (DATA, 'cell'), (COMMAND, 'cell'), (COMMAND, 'shop'), (STATE, 'shop'), (DEVICE_COMMAND, 'cell'), (REPORT, 'cell'), (COPY, 'cell')},
     'cell': {(COMMAND, 'cell'), (COMMAND, 'shop'), (STATE, 'shop'), (RECEIPT, 'shop'), (OFFER, 'shop')},
     'other': {(STATE, 'shop')},
 }
@@ -57,7 +57,7 @@ def main():
             wait_for(lambda: all(client.is_connected() for client in clients.values()), 'all are connected')
             time.sleep(0.3)
             for user, client in clients.items():
-                for topic in (BIRTH, DATA, COMMAND, DEVICE_COMMAND, RECEIPT, REPORT, OFFER, STATE):
+                for topic in (BIRTH, DATA, COMMAND, DEVICE_COMMAND, RECEIPT, REPORT, COPY, OFFER, STATE):
                     client.publish(topic, user, 1)
             # A broker delivers in order: after the last state, no more messages of that user arrive.
             wait_for(lambda: all((STATE, 'shop') in each for each in received.values()), 'the state is received')

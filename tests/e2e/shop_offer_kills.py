@@ -44,13 +44,15 @@ class World:
             machine.start_screen()
             self.machines[node], self.numbers[node] = machine, add_machine(self.database, node)
         self.asked = {}      # (request, node): files; every request of the planner is repeated until it is answered
+        self.programs = 0    # each has its own names of files
         self.unanswered = {}  # request: files, nodes
         self.decided = {}    # (node, id): decision that the screen has confirmed
 
     def plan(self):
         """The planner offers a program; a request without an answer is repeated with its number."""
         if not self.unanswered or self.chance.random() < 0.5:
-            number = len(self.asked)
+            self.programs += 1
+            number = self.programs
             files = program(f'part{number}.ngc', f'(part {number})\nM2\n', **{f'sub{number}': 'M99\n' * self.chance.randint(1, 20000)})
             self.unanswered[str(uuid.uuid4())] = files, self.chance.sample(NODES, self.chance.randint(1, len(NODES)))
         for request, (files, nodes) in list(self.unanswered.items()):

@@ -206,6 +206,28 @@ def attack(world, decoder):
     return offer['id']
 
 
+def check_tools(world):
+    """Each version of the tool table arrives once; the role view cannot download it."""
+    path = world.mill.ini.parent / re.search(r'(?m)^TOOL_TABLE *= *(\S+)', world.mill.ini.read_text()).group(1)
+    versions = lambda: json.loads(ask(f'{world.planner.address}/copies')[1])['copies']
+    wait_for(versions, 'the tool table arrives')
+    time.sleep(6)
+    found = versions()
+    expect(len(found) == 1 and found[0]['sha256'] == hashlib.sha256(path.read_bytes()).hexdigest() and found[0]['name'] == path.name, 'one version', found)
+    address = f'{world.planner.address}/copies/{found[0]["id"]}'
+    expect(ask(address) == (200, path.read_text()), 'the version is downloaded')
+    expect(ask(f'{world.planner.address}/copies/99999')[0] == 404 and ask(f'{world.planner.address}/copies/x')[0] == 404, 'other versions')
+    expect(ask(address, 'POST', b'')[0] in (404, 405), 'a version is not changed')
+    before = path.read_bytes()
+    if not os.geteuid():
+        done = subprocess.run(['curl', '-s', '-o', '/dev/null', '-w', '%{http_code}', address], user='nobody', cwd='/', capture_output=True, text=True, check=False)
+        expect(done.stdout == '403', 'another user needs a token', done.stdout)
+    path.write_bytes(before + b'T77 P77 D1 Z1 ;\xff\n')
+    wait_for(lambda: len(versions()) == 2, 'the new version arrives', 90)
+    newest = versions()[0]
+    expect(newest['sha256'] == hashlib.sha256(before + b'T77 P77 D1 Z1 ;\xff\n').hexdigest(), 'the new version', newest)
+
+
 def check_attack(world, decoder):
     before = world.state_of_machine()
     number = attack(world, decoder)
@@ -227,7 +249,7 @@ def main():
         decoder = make_decoder(words[3], folder)
         world = World(words, folder)
         try:
-            for check in (check_acceptance, check_question, check_ends, check_hostile, check_rights):
+            for check in (check_acceptance, check_question, check_ends, check_hostile, check_rights, check_tools):
                 check(world)
             check_attack(world, decoder)
         except TimeoutError:

@@ -58,6 +58,7 @@ class Fields {
         }
         return *value;
     }
+    bool has(const char *name) const { return find(name) != nullptr; }
     void set_problem(std::string what) {
         if (problem_.empty()) {
             problem_ = std::move(what);

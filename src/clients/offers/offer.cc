@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <set>
 #include <utility>
 
@@ -114,27 +113,23 @@ std::uint64_t Offer::bytes() const {
     return sum;
 }
 
-std::string sha256_of(const std::vector<OfferedFile> &files) {
-    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> hash(EVP_MD_CTX_new(), EVP_MD_CTX_free);
-    EVP_DigestInit_ex(hash.get(), EVP_sha256(), nullptr);
-    const auto add = [&hash](std::string_view bytes) {
-        EVP_DigestUpdate(hash.get(), bytes.data(), bytes.size());
-        constexpr char END = '\0';
-        EVP_DigestUpdate(hash.get(), &END, 1);
-    };
-    for (const OfferedFile &file : files) {
-        add(file.name);
-        add(std::to_string(file.text.size()));
-        EVP_DigestUpdate(hash.get(), file.text.data(), file.text.size());
-    }
+std::string sha256_of_bytes(std::string_view bytes) {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned size = 0;
-    EVP_DigestFinal_ex(hash.get(), digest.data(), &size);
+    EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr);
     std::string text;
     for (unsigned i = 0; i < size; ++i) {
         text += fmt::format("{:02x}", digest[i]);
     }
     return text;
+}
+
+std::string sha256_of(const std::vector<OfferedFile> &files) {
+    std::string bytes;
+    for (const OfferedFile &file : files) {
+        bytes += file.name + '\0' + std::to_string(file.text.size()) + '\0' + file.text;
+    }
+    return sha256_of_bytes(bytes);
 }
 
 bool isOfferId(std::string_view text) {

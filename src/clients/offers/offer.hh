@@ -48,6 +48,9 @@ inline constexpr std::size_t MOST_MESSAGE_BYTES = 2 * MOST_TEXT_BYTES;
 /// hexadecimal.
 std::string sha256_of(const std::vector<OfferedFile> &files);
 
+/// In lower-case hexadecimal.
+std::string sha256_of_bytes(std::string_view bytes);
+
 bool isOfferId(std::string_view text);
 /// Printable UTF-8 without control characters, line breaks included.
 bool isPlainText(std::string_view text);

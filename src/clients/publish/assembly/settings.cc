@@ -145,6 +145,9 @@ class SectionReader {
                                         .node = node.node,
                                         .device = node.device,
                                         .brokers = node.brokers};
+        if (const ini::IniEntry *const tools = file_.find("EMCIO", "TOOL_TABLE"); tools != nullptr) {
+            settings.offers->copies.push_back({"tools", file_.resolve_path(tools->value)});
+        }
     }
     void read_agent(Settings &settings) {
         settings.agent.device = settings.node.device;

@@ -11,8 +11,8 @@
 namespace mw::publish {
 
 OfferSession::OfferSession(OfferSettings settings, offers::OfferBox &box, BrokerLink &link, Tell tell)
-    : settings_(std::move(settings)), box_(box), link_(link), tell_(std::move(tell)),
-      retry_s_(settings_.first_retry_s) {}
+    : settings_(std::move(settings)), box_(box), copies_(settings_.copies), link_(link),
+      tell_(std::move(tell)), retry_s_(settings_.first_retry_s) {}
 
 void OfferSession::tell_trouble(const Result<> &done) {
     const std::string now = done.has_value() ? "" : done.error().str();
@@ -60,6 +60,13 @@ void OfferSession::take_reply(std::string_view payload) {
         return;
     }
     reply_s_ = now_.at_s;
+    for (const std::string &kind : reply->wanted) {
+        if (const offers::Copy *const copy = copies_.find(kind); copy != nullptr) {
+            link_.publish(
+                {offers::copy_topic(settings_.host, settings_.group, settings_.node, settings_.device),
+                 offers::encode(*copy), 1, false});
+        }
+    }
     Result<> done;
     if (!reply->noted.empty()) {
         done = box_.note(reply->noted);
@@ -91,8 +98,10 @@ void OfferSession::report() {
         return;
     }
     version_ = version;
+    offers::Report report = offers::report_of(*entries);
+    report.copies = copies_.look(now_.at_s);
     link_.publish({offers::report_topic(settings_.host, settings_.group, settings_.node, settings_.device),
-                   offers::encode(offers::report_of(*entries)), 1, false});
+                   offers::encode(report), 1, false});
 }
 
 void OfferSession::step(const Moment &now) {

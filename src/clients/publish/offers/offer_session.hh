@@ -7,14 +7,16 @@
 #include <string>
 
 #include "clients/offers/offer_box.hh"
+#include "clients/publish/offers/copy_source.hh"
 #include "clients/publish/sparkplug/broker_link.hh"
 
 namespace mw::publish {
 
 struct OfferSettings {
-    std::string host, group, node, device;  ///< parts of the topics
-    std::size_t brokers = 1;                ///< number of brokers in the list
-    double report_s = 5;                    ///< interval between two reports
+    std::string host, group, node, device;   ///< parts of the topics
+    std::size_t brokers = 1;                 ///< number of brokers in the list
+    std::vector<CopySource::File> copies{};  ///< files that the shop collects
+    double report_s = 5;                     ///< interval between two reports
     double first_retry_s = 1, longest_retry_s = 30;
     double answer_s = 10;   ///< timeout of a connection
     double silence_s = 60;  ///< without a reply for this time, the shop may be at another broker
@@ -48,6 +50,7 @@ class OfferSession {
 
     OfferSettings settings_;
     offers::OfferBox &box_;
+    CopySource copies_;
     BrokerLink &link_;
     Tell tell_;
     Moment now_;

@@ -30,24 +30,34 @@ void OfferDesk::take(const publish::LinkEvent &event) {
     std::visit(Overloaded{[this](const publish::Connected &) {
                               phase_ = Phase::ONLINE;
                               if (settings_.groups.empty()) {
-                                  link_.subscribe(offers::report_topic(settings_.name, "+", "+", "+"));
+                                  subscribe("+");
                               }
                               for (const std::string &group : settings_.groups) {
-                                  link_.subscribe(offers::report_topic(settings_.name, group, "+", "+"));
+                                  subscribe(group);
                               }
                           },
                           [this](const publish::Disconnected &) { lose(); },
                           [this](const publish::Publication &message) {
-                              if (phase_ == Phase::ONLINE && !message.isRetained) {
-                                  take_report(message);
+                              if (phase_ != Phase::ONLINE || message.isRetained) {
+                                  return;
+                              }
+                              if (const auto machine = machine_of("report", message.topic)) {
+                                  take_report(*machine, message);
+                              } else if (const auto sender = machine_of("copy", message.topic)) {
+                                  take_copy(*sender, message);
                               }
                           },
                           [](const publish::BarrierPassed &) {}},
                event);
 }
 
-std::optional<MachineName> OfferDesk::machine_of(std::string_view topic) const {
-    const std::string start = fmt::format("millwright/report/{}/", settings_.name);
+void OfferDesk::subscribe(const std::string &group) {
+    link_.subscribe(offers::report_topic(settings_.name, group, "+", "+"));
+    link_.subscribe(offers::copy_topic(settings_.name, group, "+", "+"));
+}
+
+std::optional<MachineName> OfferDesk::machine_of(std::string_view kind, std::string_view topic) const {
+    const std::string start = fmt::format("millwright/{}/{}/", kind, settings_.name);
     if (!topic.starts_with(start)) {
         return std::nullopt;
     }
@@ -76,27 +86,31 @@ void OfferDesk::hold_back(const MachineName &machine, offers::Reply &reply) {
     }
 }
 
-void OfferDesk::take_report(const publish::Publication &message) {
-    const auto machine = machine_of(message.topic);
-    if (!machine.has_value()) {
-        return;
+void OfferDesk::take_copy(const MachineName &machine, const publish::Publication &message) {
+    const auto copy = offers::decode_copy(message.payload);
+    const auto done =
+        copy.has_value() ? ledger_.take(machine, *copy) : Result<>(std::unexpected(copy.error()));
+    if (!done.has_value()) {
+        tell_trouble(fmt::format("{}: {}.", message.topic, done.error().message));
     }
+}
+
+void OfferDesk::take_report(const MachineName &machine, const publish::Publication &message) {
     const auto report = offers::decode_report(message.payload);
     if (!report.has_value()) {
         tell_trouble(fmt::format("{}: {}.", message.topic, report.error().message));
         return;
     }
-    auto reply = ledger_.take(*machine, *report);
+    auto reply = ledger_.take(machine, *report);
     if (!reply.has_value()) {
         tell_trouble(
             fmt::format("Offers wait in the database and at the machines: {}.", reply.error().message));
         return;
     }
     tell_trouble("");
-    hold_back(*machine, *reply);
-    link_.publish(
-        {offers::reply_topic(settings_.name, machine->node.group, machine->node.node, machine->device),
-         offers::encode(*reply), 1, false});
+    hold_back(machine, *reply);
+    link_.publish({offers::reply_topic(settings_.name, machine.node.group, machine.node.node, machine.device),
+                   offers::encode(*reply), 1, false});
 }
 
 void OfferDesk::step(double now_s) {

@@ -25,6 +25,8 @@ class OfferLedger {
     /// Stores the states of a report, then returns the reply. Nothing is stored after an error. May wait for
     /// the database.
     virtual Result<offers::Reply> take(const MachineName &machine, const offers::Report &report) = 0;
+    /// Stores a version once.
+    virtual Result<> take(const MachineName &machine, const offers::Copy &copy) = 0;
 };
 
 struct DeskSettings {
@@ -53,9 +55,11 @@ class OfferDesk {
         double at_s = 0;
     };
     void take(const publish::LinkEvent &event);
-    void take_report(const publish::Publication &message);
+    void take_report(const MachineName &machine, const publish::Publication &message);
+    void take_copy(const MachineName &machine, const publish::Publication &message);
+    void subscribe(const std::string &group);
     void hold_back(const MachineName &machine, offers::Reply &reply);
-    std::optional<MachineName> machine_of(std::string_view topic) const;
+    std::optional<MachineName> machine_of(std::string_view kind, std::string_view topic) const;
     void lose();
     void tell_trouble(const std::string &what);
 

@@ -49,7 +49,8 @@ Result<offers::Reply> OfferStore::take(const MachineName &machine, const offers:
     if (!database_.has_value()) {
         return fail("the database is not connected");
     }
-    const auto changes = nlohmann::json::parse(offers::encode(report)).at("changes").dump();
+    const auto document = nlohmann::json::parse(offers::encode(report));
+    const std::string changes = document.at("changes").dump();
     const std::array parameters{words(machine.node.group),    words(machine.node.node),
                                 words(machine.device),        words(changes),
                                 words(array_of(report.open)), words(report.hasRoom ? "t" : "f")};
@@ -63,7 +64,39 @@ Result<offers::Reply> OfferStore::take(const MachineName &machine, const offers:
     if (reply.has_value() && reply->broken.has_value()) {
         return fail(fmt::format("the offer {} in the database: {}", reply->broken->id, reply->broken->why));
     }
+    if (reply.has_value() && !report.copies.empty()) {
+        const std::array of_copies{words(machine.node.group), words(machine.node.node), words(machine.device),
+                                   words(document.at("copies").dump())};
+        const auto wanted = database_->ask("SELECT wanted_copies($1, $2, $3, $4::json)", of_copies);
+        if (!wanted.has_value()) {
+            database_.reset();
+            return std::unexpected(wanted.error());
+        }
+        reply->wanted =
+            nlohmann::json::parse(wanted->text(0, 0).value_or("[]")).get<std::vector<std::string>>();
+    }
     return reply;
+}
+
+Result<> OfferStore::take(const MachineName &machine, const offers::Copy &copy) {
+    if (!database_.has_value()) {
+        return fail("the database is not connected");
+    }
+    const std::array parameters{words(machine.node.group),
+                                words(machine.node.node),
+                                words(machine.device),
+                                words(copy.facts.kind),
+                                words(std::to_string(copy.facts.at)),
+                                words(copy.facts.sha256),
+                                words(copy.name),
+                                Parameter{copy.bytes, true, false}};
+    const auto rows =
+        database_->ask("SELECT add_copy($1, $2, $3, $4, $5::bigint, $6, $7, $8::bytea)", parameters);
+    if (!rows.has_value()) {
+        database_.reset();
+        return std::unexpected(rows.error());
+    }
+    return {};
 }
 
 }  // namespace mw::shop

@@ -23,6 +23,7 @@ class OfferStore final : public OfferLedger {
     bool isOpen() const { return database_.has_value(); }
 
     Result<offers::Reply> take(const MachineName &machine, const offers::Report &report) override;
+    Result<> take(const MachineName &machine, const offers::Copy &copy) override;
 
   private:
     std::string name_, collector_;

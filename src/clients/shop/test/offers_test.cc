@@ -71,8 +71,13 @@ class PlayedLedger final : public OfferLedger {
         }
         return reply;
     }
+    Result<> take(const MachineName &, const offers::Copy &copy) override {
+        copies.push_back(copy);
+        return {};
+    }
     bool isThere = true;
     std::vector<Row> rows;
+    std::vector<offers::Copy> copies;
 };
 
 const MachineName MILL{{"g", "mill-1"}, "Mill"};
@@ -185,7 +190,20 @@ TEST(OfferDesk, CollectsItsGroups) {
     world.broker.packets.clear();
     world.start({"a", "b"});
     EXPECT_EQ(world.broker.packets.at(1).message.topic, "millwright/report/shop/a/+/+");
-    EXPECT_EQ(world.broker.packets.at(2).message.topic, "millwright/report/shop/b/+/+");
+    EXPECT_EQ(world.broker.packets.at(3).message.topic, "millwright/report/shop/b/+/+");
+}
+
+TEST(OfferDesk, StoresOnlyCopiesWhoseHashFits) {
+    DeskWorld world;
+    offers::Copy copy{{"tools", offers::sha256_of_bytes("T1 P1\n"), 5}, "tool.tbl", "T1 P1\n"};
+    world.send("millwright/copy/shop/g/mill-1/Mill", encode(copy));
+    EXPECT_EQ(world.ledger.copies, std::vector{copy});
+    copy.bytes = "T2 P1\n";
+    world.send("millwright/copy/shop/g/mill-1/Mill", encode(copy));
+    world.send("millwright/copy/shop/g/mill-1/Mill", "{}");
+    EXPECT_EQ(world.ledger.copies.size(), 1);
+    EXPECT_EQ(world.told.size(), 2);
+    EXPECT_TRUE(published(world.broker).empty()) << "a copy has no answer";
 }
 
 /// A desk and a machine; a network that loses and repeats messages.

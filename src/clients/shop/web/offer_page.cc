@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text.hh"
 #include "clients/offers/offer.hh"
 
 namespace mw::shop {
@@ -146,7 +147,38 @@ screen::Response OfferPage::withdraw(const std::string &body) {
     return written("SELECT withdraw_offer($1::uuid, $2)", parameters);
 }
 
+screen::Response OfferPage::copy(const screen::Request &request) {
+    if (request.path == "/copies") {
+        auto found = ask("SELECT page_copies()");
+        return found.has_value() ? screen::Response{.body = std::move(*found)}
+                                 : plain(UNAVAILABLE, found.error().message);
+    }
+    if (request.role < screen::Role::OPERATE) {
+        return plain(FORBIDDEN, "Copies need a token of the role operate.");
+    }
+    const auto number =
+        parse_uint(std::string_view(request.path).substr(std::string_view("/copies/").size()));
+    if (!number.has_value() || *number > INT32_MAX) {
+        return plain(NOT_FOUND, "There is no such copy.");
+    }
+    const std::array parameters{words(std::to_string(*number))};
+    const auto found = ask("SELECT encode(bytes, 'hex') FROM machine_copy WHERE id = $1::bigint", parameters);
+    if (!found.has_value()) {
+        return plain(UNAVAILABLE, found.error().message);
+    }
+    constexpr int HEX = 16;
+    std::string bytes;
+    for (std::size_t at = 0; at + 1 < found->size(); at += 2) {
+        bytes += static_cast<char>(std::stoi(found->substr(at, 2), nullptr, HEX));
+    }
+    return found->empty() ? plain(NOT_FOUND, "There is no such copy.")
+                          : screen::Response{.type = "application/octet-stream", .body = std::move(bytes)};
+}
+
 screen::Response OfferPage::answer(const screen::Request &request) {
+    if (request.method == "GET" && request.path.starts_with("/copies")) {
+        return copy(request);
+    }
     if (request.method == "GET" && request.path == "/offers") {
         return list();
     }

@@ -20,12 +20,14 @@ class OfferPage {
     explicit OfferPage(std::string database) : name_(std::move(database)) {}
 
     /// GET /offers: the newest offers with their states. POST /offers: offers a program, role OPERATE. POST
-    /// /offers/withdraw, role OPERATE.
+    /// /offers/withdraw, role OPERATE. GET /copies: versions of collected files. GET /copies/ID: one of them,
+    /// role OPERATE.
     screen::Response answer(const screen::Request &request);
 
   private:
     screen::Response list();
     screen::Response add(const std::string &body);
+    screen::Response copy(const screen::Request &request);
     screen::Response withdraw(const std::string &body);
     Result<std::string> ask(const std::string &sql, std::span<const Parameter> parameters = {});
     screen::Response written(const std::string &sql, std::span<const Parameter> parameters);

@@ -101,6 +101,16 @@ function offerRow(offer) {
 async function showOffers() {
   part('offers').replaceChildren(...(await get('offers')).offers.map(offerRow));
 }
+function copyRow(copy) {
+  const link = document.createElement('a');
+  link.href = `copies/${copy.id}`;
+  link.download = copy.name;
+  link.textContent = copy.name;
+  return row([time(copy.at), copy.machine, link, `${(copy.bytes / 1000).toFixed(1)} kB`, copy.sha256.slice(0, 12)], [3]);
+}
+async function showCopies() {
+  part('copies').replaceChildren(...(await get('copies')).copies.map(copyRow));
+}
 function showTargets(machines) {
   const names = machines.map((machine) => `${machine.id} ${machine.group}/${machine.node}/${machine.device}`);
   if (part('targets').dataset.names === names.join()) return;
@@ -133,6 +143,7 @@ async function refresh() {
     part('machines').replaceChildren(...shop.machines.map((machine) => machineRow(machine, sums.machines[machine.id] ?? {}, shop.at)));
     showTargets(shop.machines);
     await showOffers();
+    await showCopies();
     part('shift').textContent = sums.shift ? `– shift ${sums.shift}` : '';
     part('problem').textContent = '';
   } catch (error) {

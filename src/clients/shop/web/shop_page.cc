@@ -82,7 +82,8 @@ void ShopPage::answer(const screen::Request &request, screen::Reply reply) {
     const bool isPart = request.path == "/" || request.path == "/page.css" || request.path == "/page.js";
     if (request.role == screen::Role::NOBODY && !isPart) {
         reply(plain(403, "Sign in with a token.\n"));
-    } else if (request.path == "/offers" || request.path.starts_with("/offers/")) {
+    } else if (request.path == "/offers" || request.path.starts_with("/offers/") ||
+               request.path == "/copies" || request.path.starts_with("/copies/")) {
         reply(offers_.answer(request));
     } else if (request.method != "GET") {
         reply(plain(405, "The page is read-only: only GET requests are possible.\n"));
