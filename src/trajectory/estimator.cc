@@ -11,18 +11,18 @@ namespace {
 
 constexpr std::uint64_t PLANNER_CYCLES = 5;
 constexpr double LONGEST_STAND_S = 5, LONGEST_MOVE_S = 50 * Estimator::DRIVEN_S;
-/// A limit counts as binding from this part of it on.
+/// A limit counts as binding when its use is at least this part of it.
 constexpr double NEAR = 0.93;
-/// A move that takes this much of the time at its feed runs at its feed.
+/// A move counts as limited by its feed if it takes at most this factor of the time at its feed.
 constexpr double AT_FEED = 1.02;
 
-/// Of the length that a feed counts.
+/// Length of a primitive along which its feed counts.
 double feed_length_of(const Primitive &p) {
     const double length = feed_length(p).length;
     return length > 0 ? length : p.length;
 }
 
-/// The last part of a primitive.
+/// Returns the last part of a primitive, with the given length.
 Primitive tail_of(const Primitive &p, double length) {
     const double from = p.length - length;
     Primitive tail = p;
@@ -87,7 +87,7 @@ void Estimator::add(const Primitive &primitive, const MoveRequest &request) {
     planner_->add(driven, plain);
 }
 
-/// The speed along the parameter of a primitive that feed, velocities and curvature allow.
+/// Maximum speed along the parameter of a primitive within its feed, the velocity limits and the curvature.
 double Estimator::speed_bound(const Primitive &p, const MoveRequest &request) const {
     const double feed_length = feed_length_of(p);
     const double feed = request.isRapid ? UNLIMITED : scales_.feed * request.tag.requested_velocity;
@@ -108,14 +108,15 @@ double Estimator::speed_bound(const Primitive &p, const MoveRequest &request) co
     return speed;
 }
 
-/// What of a move is to be driven: all of it, or its end when it takes longer than DRIVEN_S.
+/// Returns the part of a move that is simulated: the whole move, or its end if the move takes longer than
+/// DRIVEN_S.
 Primitive Estimator::skip_to_end(const Primitive &primitive, const MoveRequest &request) {
     const double speed = speed_bound(primitive, request);
     if (!(speed > 0) || primitive.length <= DRIVEN_S * speed) {
         return primitive;
     }
     finish();
-    // Below this length positions have too few digits to be driven.
+    // A shorter move is not simulated, because positions have too few digits for it.
     const double least = 1e-6 * (1.0 + geometry::norm(primitive.end));
     const double length = DRIVEN_S * speed >= least ? DRIVEN_S * speed : 0.0;
     const Primitive tail = tail_of(primitive, length);
@@ -161,7 +162,8 @@ bool Estimator::step() {
     return !isStuck;
 }
 
-/// |n-th difference| over its limit; `order` 0 velocity, 1 acceleration, 2 jerk.
+/// Returns |n-th difference of the positions| divided by its limit. `order`: 0 velocity, 1 acceleration, 2
+/// jerk.
 double Estimator::ratio(int i, int order) const {
     const auto along = [&](int axis) {
         const double v = last_[0][axis] - last_[1][axis];
@@ -177,7 +179,7 @@ double Estimator::ratio(int i, int order) const {
     return value / (period_power_[static_cast<std::size_t>(order)] * limit);
 }
 
-/// Counts each cycle of a short move and some of a long one.
+/// Evaluates every cycle of a short move, and some cycles of a long one.
 void Estimator::count(const ExecutorOutput &out) {
     if (out.move != 0 && out.move != move_) {
         close_move();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What planner and executor share: geometry, timing and commits from the planner; the state from the
-// executor. Both sides live in one process; each array element has one writer, each counter one writer.
+// Data that the planner and the executor share. The planner writes geometry, timing and commits, the executor
+// writes its state. Both run in one process. Each array element and each counter has one writer.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@
 
 namespace mw::trajectory {
 
-/// Counts moves, spans, cells and primitives from 1 on; an element n lives in slot n modulo the capacity.
+/// Number of a move, span, cell or primitive, from 1 on. Element n is in slot n modulo the capacity.
 using Sequence = std::uint64_t;
 
-/// Who a stretch of path belongs to; plain data that planner and executor only carry.
+/// Source of a part of the path. The planner and the executor only copy it.
 struct MoveTag {
     std::uint64_t id = 0;
     std::int32_t line = 0;
@@ -26,88 +26,96 @@ struct MoveTag {
     std::uint32_t block = 0;
     std::uint8_t type = 0;
     bool isProbe = false;
-    bool isProbeAway = false;       ///< trips when contact is lost
-    double requested_velocity = 0;  ///< along the feed length; 0: as fast as the limits allow
-    double feed_ratio = 1;          ///< s per feed length
-    double end_s = 0;               ///< where it ends on the programmed path
+    bool isProbeAway = false;       ///< probing move that triggers when contact is lost
+    double requested_velocity = 0;  ///< feed along the feed length [unit/s]; 0: no feed, only the limits
+    double feed_ratio = 1;          ///< change of s per feed length
+    double end_s = 0;               ///< end of the move on the programmed path
     Pose end;
 };
 
-/// A tap along a line: x is 0 at the start and `depth` at the bottom.
+/// A tap along a line. x is 0 at the start and `depth` at the bottom [unit].
 struct TapTerms {
     double depth = 0;
-    double per_turn = 0;    ///< distance along x per revolution
-    double back_scale = 1;  ///< spindle speed of the retract over that of the cut
-    double low = 0;         ///< x stays above
-    double high = 0;        ///< and below
-    double velocity = 0;    ///< highest along x
+    double per_turn = 0;    ///< pitch: distance along x per revolution
+    double back_scale = 1;  ///< spindle speed of the retract divided by that of the cut
+    double low = 0;         ///< lower limit of x
+    double high = 0;        ///< upper limit of x
+    double velocity = 0;    ///< maximum velocity along x
     double acceleration = 0;
     double jerk = 0;
 };
 
-/// A part of a pass with one rule of revolutions: their number per unit changes evenly along it.
+/// A part of a pass. The number of revolutions per unit of length changes linearly along it.
 struct PassLeg {
     double start_s = 0, length = 0;
-    double turns = 0;                          ///< at its start, since the start of the pass
-    double per_unit_in = 0, per_unit_out = 0;  ///< revolutions per unit at its ends
+    double turns = 0;  ///< revolutions from the start of the pass to the start of the leg
+    double per_unit_in = 0, per_unit_out = 0;  ///< revolutions per unit at the start and at the end
     double v_most = 0;                         ///< maximum speed
-    double v_out = 0;                          ///< speed at its end from which all that follows can be kept
-    /// Revolutions since the start of the pass, and per unit, at a place of the leg.
+    double v_out = 0;                          ///< maximum speed at its end that the rest of the pass allows
+    /// Revolutions since the start of the pass, and revolutions per unit, at position `s` of the leg.
     double turns_at(double s) const noexcept;
     double per_unit_at(double s) const noexcept;
 };
 
-/// Along the curve from `start_s` to `end_s`, from rest to rest, locked to the angle of a spindle.
+/// A motion along the curve from `start_s` to `end_s`, locked to the angle of a spindle. It starts and ends
+/// at standstill.
 struct Pass {
-    Sequence first = 0, last = 0;  ///< legs; 0: none
+    Sequence first = 0, last = 0;  ///< numbers of the legs; 0: none
     double start_s = 0, end_s = 0;
     int spindle = 0;
-    double direction = 1;     ///< -1: the spindle turns backwards
-    double acceleration = 0;  ///< along the curve, on all legs
+    double direction = 1;     ///< -1: the spindle runs in reverse
+    double acceleration = 0;  ///< maximum acceleration along the curve, on all legs
     double jerk = 0;
-    bool is_tap = false;  ///< in along the line of the first move, and back to its start; no legs
+    bool is_tap = false;  ///< a tap along the line of the first move and back to its start; it has no legs
     TapTerms tap;
     bool isAny() const noexcept { return is_tap || first != 0; }
 };
 
-/// A motion along the curve, in cells of time, with its stops: each begins behind a cell of the motion and
-/// ends at rest. The last one begins behind the last cell, so the executor needs no planner to stop.
+/// A motion along the curve in cells, with its stops. Each stop begins at the end of a cell of the motion and
+/// ends at standstill. The last stop begins at the end of the last cell, so the executor can stop without the
+/// planner.
 struct CurvePlan {
     struct Stop {
-        Sequence behind = 0;          ///< the cell of the motion that is left
-        Sequence begin = 0, end = 0;  ///< cells of the stop; none where the motion itself ends at rest
+        Sequence behind = 0;  ///< the stop begins at the end of this cell of the motion
+        Sequence begin = 0,
+                 end =
+                     0;  ///< cells of the stop, `end` excluded; none if the motion itself ends at standstill
     };
     static constexpr std::size_t MOST_STOPS = 192;
 
-    std::uint64_t plan = 0;       ///< increasing
-    Sequence behind = 0;          ///< continues the present plan behind this cell; 0: begins at rest
-    Sequence begin = 0, end = 0;  ///< cells
-    std::uint64_t brakes = 0;  ///< Snapshot::brakes that a start at rest was made for; another value voids it
-    std::uint64_t after = 0;   ///< Snapshot::plan that a start at rest was made for; another value voids it
-    Sequence span = 0, move = 0;            ///< at the start, from rest
-    Sequence last_span = 0, last_move = 0;  ///< that are known
-    bool is_stop = false;                   ///< no motion: the present plan takes its next stop
-    Pass pass;                              ///< instead of cells
+    std::uint64_t plan = 0;  ///< number of the plan, increasing
+    Sequence behind =
+        0;  ///< the plan continues the current plan from the end of this cell; 0: it begins at standstill
+    Sequence begin = 0, end = 0;  ///< cells of the motion, `end` excluded
+    std::uint64_t brakes = 0;     ///< Snapshot::brakes for which a start from standstill was planned; with
+                                  ///< another value the plan is ignored
+    std::uint64_t after = 0;  ///< Snapshot::plan for which a start from standstill was planned; with another
+                              ///< value the plan is ignored
+    Sequence span = 0, move = 0;            ///< span and move at a start from standstill
+    Sequence last_span = 0, last_move = 0;  ///< last known span and move
+    bool is_stop = false;  ///< no motion: the executor takes the next stop of the current plan
+    Pass pass;             ///< a pass instead of cells
     std::size_t stop_count = 0;
     std::array<Stop, MOST_STOPS> stops{};
 };
 
 enum class Motion : std::uint8_t { REST, LOCKED, CURVE };
 
-/// The executor's state at the end of a servo cycle.
+/// State of the executor at the end of a servo cycle.
 struct Snapshot {
     std::uint64_t cycle = 0;
-    std::uint64_t plan = 0;    ///< the last plan that was taken
-    std::uint64_t brakes = 0;  ///< counts holds at rest and dropped paths: plans made before are not taken
-    std::uint64_t drops = 0;   ///< counts dropped paths; the planner starts afresh for each
+    std::uint64_t plan = 0;  ///< number of the last accepted plan
+    std::uint64_t brakes =
+        0;  ///< count of holds at standstill and of dropped paths; plans made before are ignored
+    std::uint64_t drops = 0;  ///< count of dropped paths; the planner begins a new path after each
     Motion motion = Motion::REST;
-    bool isDropping = false;  ///< stopping, and what is left will be dropped
+    bool isDropping = false;  ///< the executor stops, and the rest of the path will be dropped
     bool isHeld = false;
-    Sequence cell = 0;  ///< of the plan, and the time in it
+    Sequence cell = 0;  ///< current cell of the plan
     double time_in_cell = 0;
-    bool isOnPath = false;  ///< `x` is a point of the present path
+    bool isOnPath = false;  ///< `x` is a point of the current path
     double x = 0, v = 0;
-    Sequence done_move = 0;  ///< moves completed by what is commanded
+    Sequence done_move = 0;  ///< last move that the commanded motion has completed
 };
 
 inline constexpr std::size_t PRIMITIVE_CAPACITY = 4096;
@@ -115,25 +123,26 @@ inline constexpr std::size_t SPAN_CAPACITY = 16384;
 inline constexpr std::size_t CELL_CAPACITY = 32768;
 inline constexpr std::size_t LEG_CAPACITY = 8192;
 
-/// An output change at a place of the path.
+/// An output change at a point of the path (M62, M63, M67).
 struct PathEvent {
-    Sequence after_move = 0;  ///< fires when this move is complete
-    std::uint64_t drops = 0;  ///< Snapshot::drops of the path it belongs to; of another path it never fires
+    Sequence after_move = 0;  ///< the output changes when this move is complete
+    std::uint64_t drops = 0;  ///< Snapshot::drops of its path; the event is ignored on any other path
     bool isAnalog = false;
     std::int16_t index = 0;
     double value = 0;
 };
 
-/// Owned by the code that assembles the two sides; some megabytes, so never on a stack.
+/// Owned by the code that creates planner and executor. Its size is several megabytes: do not put it on a
+/// stack.
 struct PathStore {
     RawArray<Primitive, PRIMITIVE_CAPACITY> primitives;
     RawArray<MoveTag, PRIMITIVE_CAPACITY> moves;
     RawArray<curve::Span, SPAN_CAPACITY> spans;
     RawArray<curve::TimeCell, CELL_CAPACITY> cells;
     RawArray<PassLeg, LEG_CAPACITY> legs;
-    SpscRing<PathEvent, 1024> events;     ///< planner -> executor
-    SpscRing<CurvePlan, 16> curve_plans;  ///< planner -> executor
-    /// The last move that is known.
+    SpscRing<PathEvent, 1024> events;     ///< from planner to executor
+    SpscRing<CurvePlan, 16> curve_plans;  ///< from planner to executor
+    /// Number of the last known move.
     CopyableAtomic<Sequence> last_move{0};
 
     Primitive &primitive(Sequence n) noexcept { return primitives[n % PRIMITIVE_CAPACITY]; }

@@ -92,7 +92,7 @@ void Planner::update(const Snapshot &now) noexcept {
 }
 
 Trouble Planner::take_trouble() noexcept {
-    // Planner periods at standstill without a plan, a second of them, before a fault is reported.
+    // Planner periods without a plan at standstill before a fault is reported (1 s).
     constexpr int MOST_FAILURES = 200;
     Trouble trouble;
     const bool is_stuck = curve_.failures() >= MOST_FAILURES;

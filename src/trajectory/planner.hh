@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The planning side of path motion: joins moves, finds the fastest profile within the limits, commits it.
+// The planner of path motion. It makes a curve of the moves, calculates the fastest profile within the
+// limits, and commits it to the executor.
 #pragma once
 
 #include "trajectory/plan/curve_planner.hh"
@@ -8,63 +9,65 @@
 namespace mw::trajectory {
 
 struct Trouble {
-    bool isStuck = false;  ///< it is stopped and found no plan within a second
-    Overreach overreach;   ///< of who chooses speeds: the path stops
+    bool isStuck = false;  ///< the path is stopped, and the planner found no plan within a second
+    Overreach overreach;   ///< a planner module chose speeds that exceed the limits; the path stops
 };
 
 struct PlannerSettings {
-    double period_s = 1e-3;           ///< of the servo
-    std::uint64_t latency = 3;        ///< cycles from a plan's making to its start
-    SpeedChooser *chooser = nullptr;  ///< chooses speeds instead of the fastest; stays valid
-    bool is_estimate = false;         ///< nothing stops the motion, so a plan has only its last stop
+    double period_s = 1e-3;           ///< servo period
+    std::uint64_t latency = 3;        ///< servo cycles from the snapshot for a plan to the start of this plan
+    SpeedChooser *chooser = nullptr;  ///< planner module that chooses speeds; null: none; must remain valid
+    bool is_estimate =
+        false;  ///< for the estimator: no hold or abort can occur, so a plan has only its last stop
 };
 
-/// All methods: planner thread only. Allocates. Same calls with the same values: same bits.
+/// Call all methods in the planner thread only. Allocates memory. Equal calls give bit-identical results.
 class Planner {
   public:
     Planner(PathStore &store, const PlannerSettings &settings) noexcept;
 
-    /// Limits of the next path that begins.
+    /// Sets the limits of the next path that begins.
     void set_limits(const Limits &limits) noexcept { conditions_.limits.set(limits); }
-    /// The present path was made for the present limits and joints.
+    /// True if the current path was planned for the current limits and joints.
     bool suits() const noexcept { return curve_.suits(conditions_); }
 
-    /// For machines whose joints are not axes; `map` stays valid. Null: the axes' limits are all there are.
+    /// For machines whose joints are not axes. `map` must remain valid. Null: only the limits of the axes
+    /// apply.
     void set_joints(const JointMap *map, const JointLimits &limits, const LinearJoints &linear = {}) noexcept;
 
-    /// Soft limits of the axes: the path never leaves them. None to begin
-    /// with; +-infinity where none holds. Joints with a room are kept within that, others within their soft
-    /// limits.
+    /// Sets the soft limits of the axes, which the path does not exceed: initially none, +-infinity for an
+    /// axis without limit. Joints in `joints` are kept within their range there, other joints within their
+    /// soft limits.
     void set_room(const Pose &low, const Pose &high, const JointRoom &joints = {}) noexcept;
 
-    /// A new path begins at `start`, where the executor rests with nothing left of another.
+    /// Begins a new path at `start`. The executor must be stopped there, without a remaining path.
     void begin(const Pose &start, const Snapshot &now) noexcept;
 
-    /// One more move can be added.
+    /// True if another move can be added.
     bool hasRoom() const noexcept { return curve_.path().hasRoom(); }
-    /// Appends a move that starts at `end()`; its length must be greater than 0. Returns its number.
+    /// Appends a move that starts at `end()`. Its length must be greater than 0. Returns its number.
     Sequence add(const Primitive &primitive, const MoveRequest &request) noexcept;
-    /// Where the next move starts.
+    /// End of the last move, where the next move must start.
     const Pose &end() const noexcept { return curve_.path().end(); }
-    /// Of this path, 0 as long as it has none.
+    /// Number of the last move of this path; 0: none.
     Sequence last_move() const noexcept { return path_.end_move(); }
-    /// An output change when what has been added so far is complete; false when there is no room.
+    /// Adds an output change at the end of the last move. False if the queue is full.
     bool add_event(PathEvent event) noexcept;
-    /// Nothing follows for now: the last move is planned to its very end.
+    /// No move follows now: the last move is planned to its end.
     void release_end() noexcept;
 
     void set_scales(const Scales &scales) noexcept;
-    /// The gate before gated moves; open it once the executor waits there.
-    /// Motion begins `delay_s` after the earliest moment.
+    /// Opens the gate before a gated move. Call it when the executor waits there. The motion begins `delay_s`
+    /// after the earliest possible time.
     void open_gate(Sequence move, double delay_s) noexcept;
     bool isPhased(Sequence move) const noexcept { return path_.move(move).request.isPhased; }
     int spindle_of(Sequence move) const noexcept { return path_.move(move).request.spindle; }
-    /// The move is driven by the executor, locked to the spindle's angle, with what follows up to a stop.
+    /// True if the executor locks the move to the spindle angle. The moves up to the next stop belong to it.
     bool isLocked(Sequence move) const noexcept { return conditions_.isLocked(path_.move(move).request); }
-    /// All of the pass that the executor would begin with is known.
+    /// True if the pass that the executor would begin is known completely.
     bool isPassKnown(const Snapshot &now) const noexcept { return curve_.isPassKnown(now); }
-    /// Speed that the pass from this move on needs at the present speed of its spindle, over what the machine
-    /// and the operator allow.
+    /// Speed that the pass from this move on needs at the current spindle speed, divided by the maximum speed
+    /// of the machine and the operator.
     double pass_load(Sequence move) const noexcept { return plan::pass_load(path_, conditions_, move); }
     bool isTap(Sequence move) const noexcept { return path_.move(move).request.isTap; }
     TapVerdict check_tap(Sequence move) const noexcept {
@@ -75,25 +78,25 @@ class Planner {
         conditions_.brakings = brakings;
         conditions_.encoder_steps = encoder_steps;
     }
-    /// Seconds from a snapshot to the earliest start of a plan made with it.
+    /// Time from a snapshot to the earliest start of a plan made with it [s].
     double latency_s() const noexcept { return static_cast<double>(settings_.latency) * settings_.period_s; }
-    /// Move whose gate the executor waits at, 0: none.
+    /// The move whose gate the executor waits at; 0: none.
     Sequence waiting_gate(const Snapshot &now) const noexcept;
-    /// Single blocks: stops where the source block is another than `block`.
+    /// Single block: the path stops before moves of any block other than `block`.
     void set_step(bool isStepping, std::uint32_t block) noexcept;
-    /// The executor is stopped, and only single blocks keep it from continuing.
+    /// True if the executor is stopped and only single block prevents the motion.
     bool isAtStepStop(const Snapshot &now) const noexcept;
-    /// `next_block` has an answer.
+    /// True if `next_block` has a valid result.
     bool hasNext(const Snapshot &now) const noexcept;
-    /// The block that comes next for an executor in state `now`.
+    /// The block that an executor in state `now` continues with.
     std::uint32_t next_block(const Snapshot &now) const noexcept;
 
-    /// Commits what the executor needs next. Call once a planner period.
+    /// Commits the next part of the motion. Call it once per planner period.
     void update(const Snapshot &now) noexcept;
 
-    /// The committed plan runs to the end of the known path and there is an open end that could be released.
+    /// True if the committed plan reaches the end of the known path, and release_end() would extend it.
     bool isStarving() const noexcept { return curve_.isStarving(); }
-    /// Why the path does not continue; each once.
+    /// Returns why the path does not continue. Each reason is returned once.
     Trouble take_trouble() noexcept;
     std::uint32_t moves_left(const Snapshot &now) const noexcept;
 
@@ -102,7 +105,7 @@ class Planner {
     Conditions conditions_;
     PlannedPath path_;
     plan::CurvePlanner curve_;
-    std::uint64_t drops_ = 0;  ///< Snapshot::drops of this path
+    std::uint64_t drops_ = 0;  ///< Snapshot::drops at the start of this path
     bool isOverreachTold_ = false, is_stuck_told_ = false;
 };
 

@@ -9,21 +9,22 @@ namespace mw::trajectory::curve {
 
 namespace {
 
-/// Deviation of a curve at a corner over the change of the tangent times the knot spacing, for even knots.
-/// Only the first guess: what is too wide is narrowed.
+/// Deviation of a curve at a corner, divided by the change of the tangent and the knot spacing, for uniform
+/// knots. It is only the first estimate: spacings that are too large are reduced.
 constexpr double CORNER_DEVIATION = 28.0 / 120.0;
-/// Length over which a control point averages the path, divided by the knot spacing.
+/// Length of path that a control point averages, divided by the knot spacing.
 constexpr double MEAN_WIDTH = 1.5;
 constexpr int MAX_ROUNDS = 60;
-/// Part of the tolerance by which the bound of the deviation may exceed the deviation.
+/// Fraction of the tolerance by which the bound of the deviation may exceed the deviation.
 constexpr double BOUND_SLACK = 0.02;
 constexpr double MAX_PARTS = 16;
-/// A corner gets a knot at its vertex if the last such knot is this many spacings away.
+/// A corner gets a knot at its vertex if the last such knot is at least this many spacings away.
 constexpr double APART = 3.0;
-/// Knots before the first open span that its control points depend on, and behind it that those of the last
-/// final span do: a control point depends on its neighbours, whose means reach to theirs.
+/// KNOTS_BEFORE: number of knots before the first open span on which its control points depend. KNOTS_BEHIND:
+/// number of knots after the last final span on which its control points depend. A control point depends on
+/// its neighbours, and their averages extend to their own neighbours.
 constexpr std::size_t KNOTS_BEFORE = DEGREE + 1, KNOTS_BEHIND = DEGREE + 2;
-/// Least spacing [units]: bounds the number of knots for every tolerance.
+/// Minimum spacing [unit]. It bounds the number of knots for every tolerance.
 constexpr double LEAST_SPACING = 1e-6;
 
 double larger_norm(const Pose &p) noexcept {
@@ -124,7 +125,7 @@ void CurveBuilder::lay_between(double from, double to, std::size_t cap) {
     const std::size_t first = knots_.size();
     double s = from;
     while (s < to) {
-        // The spacing half a step ahead: knots lie alike from both ends.
+        // The spacing is evaluated half a step ahead, so the knots are the same in both directions.
         const double near = spacing_at(s, cap);
         std::size_t ahead = cap;
         s += spacing_at(std::min(s + 0.5 * near, to), ahead);
@@ -162,7 +163,7 @@ void CurveBuilder::lay_knots() {
 void CurveBuilder::place_controls() {
     const KnotRow row(knots_);
     const std::size_t n = row.controls();
-    // The first open span needs the control points from its own number on, and their neighbours.
+    // The first open span needs its own control points and the two adjacent ones.
     const std::size_t from = first_open_ == 0 ? 0 : first_open_ - 1;
     places_.resize(n);
     means_.resize(n);
@@ -195,14 +196,14 @@ void CurveBuilder::place_controls() {
     }
 }
 
-/// The knots that span k depends on are those that a span of the fit was made from.
+/// True if span k depends on the same knots as span `of_fit` of the fit.
 bool CurveBuilder::hasSameKnots(std::size_t k, const Fit &fit, std::size_t of_fit) const noexcept {
     const auto knots = [](const std::vector<double> &all, std::size_t span) {
         const std::size_t from = span > KNOTS_BEFORE ? span - KNOTS_BEFORE : 0;
         const std::size_t to = std::min(span + KNOTS_BEHIND + 2, all.size());
         return std::span(all).subspan(from, to - from);
     };
-    // At an end of the row fewer knots count.
+    // At an end of the knot row, a span depends on fewer knots.
     return (k < KNOTS_BEFORE ? k == of_fit : of_fit >= KNOTS_BEFORE) &&
            std::ranges::equal(knots(knots_, k), knots(fit.knots, of_fit));
 }
@@ -226,9 +227,9 @@ void CurveBuilder::make_spans() {
     last_fit_.first = first_open_;
 }
 
-/// The weights of a B-spline are 0 or above and add up to 1, so each coordinate of the curve lies between
-/// the least and the largest of its control points, and so do joints in proportion to them. An average of the
-/// path is within the room where the path is.
+/// The weights of a B-spline are not negative and add up to 1. So each coordinate of the curve lies between
+/// the minimum and the maximum of its control points, and so does a joint in proportion to them. The average
+/// of a path within the limits is within the limits.
 Pose CurveBuilder::kept_in_room(const Pose &control, const Pose &mean) const noexcept {
     Pose kept;
     for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
@@ -250,7 +251,7 @@ Span CurveBuilder::span_of(std::size_t k) const noexcept {
     span.length = knots_[k + 1] - knots_[k];
     KnotRow::Weights w;
     KnotRow(knots_).weights(k, w);
-    // From differences: a coordinate that does not move is constant to the last digit.
+    // Differences to `base` keep a coordinate that does not move constant to the last digit.
     const Pose &base = controls_[k];
     span.c[0] = base;
     for (std::size_t n = 0; n < COEFFICIENTS; ++n) {
@@ -264,7 +265,7 @@ Span CurveBuilder::span_of(std::size_t k) const noexcept {
     return span;
 }
 
-/// Spacing times deviation is constant at a corner, spacing squared times deviation on a curve.
+/// At a corner, the deviation is proportional to the spacing, on a curve to its square.
 void CurveBuilder::narrow(double s, double excess, double length) {
     const auto behind =
         std::upper_bound(caps_.begin(), caps_.end(), s, [](double x, const Cap &c) { return x < c.s; });
@@ -291,10 +292,10 @@ void CurveBuilder::narrow(double s, double excess, double length) {
     }
 }
 
-/// Returns the deviation over the tolerance. Where it is above 1 the knots become narrower.
+/// Returns the deviation divided by the tolerance. If it exceeds 1, the knot spacing is reduced there.
 double CurveBuilder::check_span(const Span &span, std::size_t &move) {
-    // The Bernstein coefficients of the second derivative bound it: between two points the deviation exceeds
-    // the larger of theirs by at most an eighth of the bound times the square of their distance.
+    // The Bernstein coefficients of the second derivative give its bound. Between two points, the deviation
+    // exceeds the larger of both by at most an eighth of this bound times the square of their distance.
     const double per2 = 1.0 / (span.length * span.length);
     const Pose d0 = span.c[2] * (2 * per2), d1 = span.c[3] * (6 * per2), d2 = span.c[4] * (12 * per2),
                d3 = span.c[5] * (20 * per2);
@@ -353,7 +354,7 @@ bool CurveBuilder::check() {
 }
 
 void CurveBuilder::keep_final(bool complete) {
-    // A corner behind the end may narrow knots as far back as this.
+    // A corner after the end can reduce knot spacings up to this distance before it.
     const double end = complete ? path_.length() : path_.length() - widest_ / SPACING_GROWTH;
     std::size_t final = 0;
     while (final < open_.size() && open_[final].span.end_s() <= end &&
@@ -369,7 +370,7 @@ void CurveBuilder::keep_final(bool complete) {
     knots_.erase(knots_.begin(), knots_.begin() + static_cast<long>(drop));
     first_open_ = open - drop;
     fixed_ = std::min(first_open_ + KNOTS_BEHIND, knots_.size());
-    // Caps and moves before the kept knots have no part in what is still open; the last cap before them has.
+    // Caps and moves before the kept knots no longer affect the open part, except the last cap before them.
     std::size_t old = 0;
     while (old + 1 < caps_.size() && caps_[old + 1].s <= knots_[0]) {
         ++old;

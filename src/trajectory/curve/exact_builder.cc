@@ -26,8 +26,9 @@ Round round_at(const Primitive &p, double s) noexcept {
     return out;
 }
 
-/// Length of the parts of an arc that keep LARGEST_ERROR. Where a function and its first two derivatives are
-/// met at both ends of a length h, the error is at most (h/2)^6/6! times the bound of the sixth derivative.
+/// Maximum length of the parts of an arc for LARGEST_ERROR. If a polynomial has the value and the first two
+/// derivatives of a function at both ends of a length h, its error is at most (h/2)^6/6! times the bound of
+/// the sixth derivative.
 double longest_part(const Primitive &arc) noexcept {
     constexpr double PER_ERROR = 64 * 720;
     const double w = std::abs(arc.omega);
@@ -102,7 +103,7 @@ void ExactBuilder::add_arc(const Primitive &arc, int parts) {
         span.c[0] = trajectory::position_at(arc, h * k);
         span.c[1] = arc.lin * h;
         for (std::size_t i = 0; i < 3; ++i) {
-            // From differences of the circular part: a position far from 0 leaves no rounding in them.
+            // Differences of the circular part avoid rounding errors at positions far from 0.
             const double d0 = from.first[i] * h, s0 = from.second[i] * h * h;
             const double by = to.position[i] - from.position[i] - d0 - 0.5 * s0;
             const double slope = to.first[i] * h - d0 - s0, bend = to.second[i] * h * h - s0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Spans along the programmed path itself, for moves that are followed exactly (G61, G61.1).
 //
-// Lines are reproduced. Arcs and helices are cut into parts; each becomes the polynomial of degree five that
-// has the position and the first two derivatives of the arc at both ends. Where two moves meet, derivatives
-// may jump: the seams report by how much.
+// Lines are reproduced. Arcs and helices are divided into parts. The polynomial of degree five for each part
+// has the position and the first two derivatives of the arc at both ends. Between two moves, derivatives may
+// jump; the seams contain these jumps.
 #pragma once
 
 #include <vector>
@@ -13,34 +13,34 @@
 
 namespace mw::trajectory::curve {
 
-/// A place where two spans meet whose derivatives differ: the curve on both sides of it.
+/// A point where two spans with different derivatives meet, with the derivatives on both sides.
 struct Seam {
     double s = 0;
     CurvePoint before, after;
 };
 
-/// [planner] The end of a span and the start of the next one.
+/// The seam between the end of a span and the start of the next one. [planner]
 Seam seam_between(const Span &before, const Span &after) noexcept;
 
-/// Planner thread. Every span is final as soon as its move is added.
+/// Use it in the planner thread only. Every span is final when its move is added.
 class ExactBuilder {
   public:
-    /// `widest`: largest length of a span [units].
+    /// `widest`: maximum length of a span [unit].
     explicit ExactBuilder(double widest) noexcept : widest_(widest) {}
 
-    /// The next move starts at the place `s`; there is no seam before it.
+    /// The next move starts at path length `s`, without a seam before it.
     void begin(double s = 0) noexcept;
-    /// Adds nothing and returns false if the length of the move is not above 0.
+    /// Adds a move. Returns false and adds nothing if its length is not above 0.
     bool add(const Primitive &primitive);
 
-    /// Appends what there is to `spans` and `seams`; the builder forgets it.
+    /// Appends the spans and seams to `spans` and `seams` and removes them from the builder.
     void move_spans(std::vector<Span> &spans, std::vector<Seam> &seams);
     const std::vector<Span> &spans() const noexcept { return spans_; }
-    /// One for each two moves that meet, in order.
+    /// The seams between successive moves, in order.
     const std::vector<Seam> &seams() const noexcept { return seams_; }
     double final_s() const noexcept { return final_s_; }
 
-    /// Largest distance of a span from its arc over the radius of the arc: this bound is kept.
+    /// Bound of the distance of a span from its arc, divided by the radius of the arc.
     static constexpr double LARGEST_ERROR = 1e-9;
 
   private:
@@ -50,7 +50,7 @@ class ExactBuilder {
     double widest_;
     double final_s_ = 0;
     bool is_first_ = true;
-    Span last_;  ///< before the next move
+    Span last_;  ///< last span, for the seam before the next move
     std::vector<Span> spans_;
     std::vector<Seam> seams_;
 };

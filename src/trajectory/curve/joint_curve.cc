@@ -10,25 +10,26 @@ namespace mw::trajectory::curve {
 namespace {
 
 constexpr std::size_t NODES = JointCurve::NODES;
-/// A part is not halved when it takes less time: samples do not show what happens in it.
+/// A part that takes less time is not halved, because servo samples do not show its details.
 constexpr double LEAST_PART_S = 1e-4;
-/// Halvings until a joint jumps, if it does.
+/// Number of halvings after which a joint position that does not converge counts as a jump.
 constexpr int MAX_DEPTH = 16;
-/// Part of the jerk limit that the error of the interpolation may make: within the margin of the profile.
+/// Fraction of the jerk limit that the interpolation error may cause. It is within the margin of the profile.
 constexpr double ERROR_SHARE = 3e-3;
-/// Relative rounding of the inverse kinematics.
+/// Relative rounding error of the inverse kinematics.
 constexpr double ROUNDING = 1e-13;
-/// Joints that jump: an error that is such a part of the change, and larger than any inverse kinematics
-/// leaves.
+/// A joint jumps if the interpolation error exceeds this fraction of its change plus an absolute error that
+/// no inverse kinematics has.
 constexpr double JUMP_SHARE = 0.01, LEAST_JUMP = 1e-5;
-/// The largest third derivative of Chebyshev's polynomial of degree n is n^2 (n^2 - 1) (n^2 - 4)/15, at its
+/// The maximum third derivative of the Chebyshev polynomial of degree n is n^2 (n^2 - 1) (n^2 - 4)/15, at its
 /// ends.
 constexpr double THIRD_OF_ERROR = 49.0 * 48.0 * 45.0 / 15.0 * 8.0;
 constexpr double LEAST = 1e-30;
 
 using Matrix = std::array<std::array<double, NODES>, NODES>;
 
-/// Chebyshev's nodes in [0, 1], and the matrix that makes powers of values there.
+/// The Chebyshev nodes in [0, 1], and the matrix that calculates the coefficients of powers from the values
+/// at the nodes.
 struct Interpolation {
     std::array<double, NODES> x{};
     Matrix powers{};
@@ -38,7 +39,7 @@ struct Interpolation {
             x[i] = 0.5 - 0.5 * std::cos(std::numbers::pi * (static_cast<double>(i) + 0.5) / NODES);
         }
         for (std::size_t i = 0; i < NODES; ++i) {
-            // Lagrange's polynomial of node i, multiplied out.
+            // The Lagrange polynomial of node i, as coefficients of powers.
             std::array<double, NODES> p{1};
             std::size_t degree = 0;
             for (std::size_t j = 0; j < NODES; ++j) {
@@ -64,7 +65,7 @@ const Interpolation &interpolation() noexcept {
     return table;
 }
 
-/// Value and derivatives by x of one joint.
+/// Value and first three derivatives of one joint by x.
 std::array<double, 4> value_at(const JointCurve::Part &part, std::size_t joint, double x) noexcept {
     std::array<double, 4> v{};
     for (std::size_t k = NODES; k-- > 0;) {
@@ -134,7 +135,8 @@ bool JointCurve::interpolate(const Span &span, Part &part) const noexcept {
             return false;
         }
     }
-    // Differences to the first node keep the rounding of large values out of the higher powers.
+    // Differences to the value at the first node keep rounding errors of large values out of the higher
+    // powers.
     const PerJoint origin = at[0];
     for (std::size_t j = 0; j < joints(); ++j) {
         for (std::size_t k = 0; k < NODES; ++k) {
@@ -159,12 +161,12 @@ double JointCurve::speed_at(const Part &part, double x) const noexcept {
     return v * part.length;
 }
 
-/// The jerk of the interpolation's error over the part of the limit that it may have. `jump`: the error over
-/// that of joints that jump.
+/// Jerk of the interpolation error divided by its permitted part of the jerk limit. `jump`: error divided by
+/// that of a jump; a joint jumps above 1.
 double JointCurve::error_of(const Span &span, const Part &part, double &jump) const noexcept {
     double worst = 0;
     jump = 0;
-    // The error is largest at the ends.
+    // The error has its maximum at the ends.
     for (const double x : {0.0, 1.0}) {
         PerJoint at{};
         if (!map_->joints_at(position_at(span, part.start_s + part.length * x), at.data())) {
@@ -206,7 +208,7 @@ void JointCurve::lay(const Span &span, double from, double length, int depth) {
         drivable_s_ = from;
         return;
     }
-    // A joint that moves by the bound of its derivative over the length of the part, and what it does there.
+    // The maximum speed of a joint motion with the length and the bounds of this part.
     double v = std::min({speed_at(part, 0), speed_at(part, 0.5), speed_at(part, 1)});
     for (std::size_t j = 0; j < joints(); ++j) {
         const double most = std::max({std::abs(value_at(part, j, 0)[1]), std::abs(value_at(part, j, 0.5)[1]),
@@ -221,7 +223,7 @@ void JointCurve::lay(const Span &span, double from, double length, int depth) {
 
 namespace {
 
-/// The parabola with the derivatives of a point.
+/// The parabola with the position and derivatives of a point.
 Pose parabola(const CurvePoint &p, double t) noexcept {
     return p.position + p.first * t + p.second * (0.5 * t * t);
 }
@@ -229,7 +231,7 @@ Pose parabola(const CurvePoint &p, double t) noexcept {
 }  // namespace
 
 JointJump joint_jump(const CurvePoint &before, const CurvePoint &after, const JointMap &map) noexcept {
-    // The same step on both sides: what the map does along the common direction cancels out.
+    // The step is the same on both sides, so errors of the differences along the common direction cancel.
     constexpr double STEP = 1e-3;
     JointJump jump;
     PerJoint at{}, low0{}, high0{}, low1{}, high1{};

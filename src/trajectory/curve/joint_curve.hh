@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints that are not axes, along a curve: polynomials of the place, from the inverse kinematics.
+// Joints that are not axes along a curve: polynomials of s, calculated with the inverse kinematics.
 //
-// A span is cut into parts. On each the joints are interpolated at Chebyshev's nodes by a polynomial of
-// degree six; a part is halved until the jerk of the interpolation's error is small against the limit at the
-// maximum speed that the joints allow there.
+// A span is divided into parts. In each part, a polynomial of degree six interpolates the joints at Chebyshev
+// nodes. A part is halved until the jerk of the interpolation error is small compared with the jerk limit, at
+// the maximum speed that the joint limits allow.
 #pragma once
 
 #include <array>
@@ -16,12 +16,13 @@ namespace mw::trajectory::curve {
 
 using PerJoint = std::array<double, MAX_JOINTS>;
 
-/// Derivatives of the joints by the place s.
+/// Derivatives of the joints by s.
 struct JointPoint {
     PerJoint first{}, second{}, third{};
 };
 
-/// Planner thread. The map is called once for each node of a span.
+/// Use it in the planner thread only. It calls the kinematics for each node of a span and for both ends of
+/// each part.
 class JointCurve {
   public:
     static constexpr std::size_t NODES = 7;
@@ -29,14 +30,14 @@ class JointCurve {
     /// A part of a span.
     struct Part {
         double start_s = 0, length = 0;
-        double speed = 0;  ///< at which every joint keeps its limits by far, if it changes slowly [1/s]
+        double speed = 0;  ///< speed far within the limits of every joint, if it changes slowly [1/s]
         std::array<PerJoint, NODES> c{};  ///< [power of (s - start_s)/length][joint]
         double end_s() const noexcept { return start_s + length; }
     };
 
-    /// `map` may be null: there are no joints to take into account. Forgets all parts.
+    /// Removes all parts. `map` null: only the limits of the axes apply.
     void begin(const JointMap *map, const JointLimits &limits) noexcept;
-    /// Computes the parts of the spans that end behind those known so far.
+    /// Calculates the parts of the spans after those that are known.
     void cover(const std::vector<Span> &spans);
     void drop_before(double s);
 
@@ -44,9 +45,9 @@ class JointCurve {
         return map_ == nullptr ? 0 : static_cast<std::size_t>(limits_.count);
     }
     const JointLimits &limits() const noexcept { return limits_; }
-    /// Largest first derivatives of the joints over all parts so far.
+    /// Maximum first derivatives of the joints over all parts until now.
     const PerJoint &largest_first() const noexcept { return largest_first_; }
-    /// From here on there are poses without joints, or joints that jump; 1e300: not found so far.
+    /// From this s on, the kinematics has no solution or a joint jumps; 1e300: no such point found.
     double drivable_s() const noexcept { return drivable_s_; }
     const std::vector<Part> &parts() const noexcept { return parts_; }
     /// Index of the part at `s`.
@@ -54,7 +55,8 @@ class JointCurve {
     JointPoint point_at(std::size_t part, double s) const noexcept;
 
   private:
-    /// The joints at the nodes of a part, at its two ends and at the middle between.
+    /// Calculates the polynomials of a part from the joints at its nodes. False if the kinematics has no
+    /// solution at a node.
     bool interpolate(const Span &span, Part &part) const noexcept;
     void lay(const Span &span, double from, double length, int depth);
     double error_of(const Span &span, const Part &part, double &jump) const noexcept;
@@ -70,9 +72,9 @@ class JointCurve {
 
 /// Jumps of the first two derivatives of the joints at a seam.
 struct JointJump {
-    PerJoint first{}, second{};  ///< sizes of the jumps
-    PerJoint before{}, after{};  ///< sizes of the first derivative
-    bool exists = false;         ///< there are joints at the pose
+    PerJoint first{}, second{};  ///< absolute values of the jumps
+    PerJoint before{}, after{};  ///< absolute values of the first derivative
+    bool exists = false;         ///< the kinematics has a solution at the seam
 };
 JointJump joint_jump(const CurvePoint &before, const CurvePoint &after, const JointMap &map) noexcept;
 

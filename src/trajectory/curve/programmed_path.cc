@@ -37,13 +37,14 @@ Pose ProgrammedPath::mean(std::size_t index, double from, double to) const noexc
     if (!(to > from)) {
         return position_at(index, from);
     }
-    // From differences: a coordinate that does not move is constant to the last digit.
+    // Differences to `base` keep a coordinate that does not move constant to the last digit.
     const Pose base = position_at(index, from);
     Pose sum;
     for (double s = from; s < to;) {
         const bool isLast = index + 1 == moves_.size();
         const double end = isLast ? to : std::min(to, moves_[index].end_s());
-        // Simpson's rule is exact on lines; arcs turn little within a knot spacing.
+        // Simpson's rule is exact for lines, and nearly exact for the short part of an arc within a knot
+        // spacing.
         sum = sum + ((position_at(index, s) - base) + (position_at(index, 0.5 * (s + end)) - base) * 4 +
                      (position_at(index, end) - base)) *
                         ((end - s) / 6);

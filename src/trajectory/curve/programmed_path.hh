@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The programmed path between two stops, by its length: what a curve is fitted to.
+// The programmed path between two stops, by its length. A curve is fitted to it.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,15 @@ namespace mw::trajectory::curve {
 /// One move of the programmed path.
 struct ProgrammedMove {
     Primitive primitive;
-    double start_s = 0;    ///< length of the path before it [units]
-    double tolerance = 0;  ///< distance that the curve may keep from it [units; degrees over A B C]
+    double start_s = 0;    ///< path length at its start [unit]
+    double tolerance = 0;  ///< maximum distance of the curve from the move [unit; degrees for A B C]
     double end_s() const noexcept { return start_s + primitive.length; }
 };
 
-/// Moves one after the other, the end of each the start of the next.
+/// Consecutive moves. Each starts at the end of the move before.
 class ProgrammedPath {
   public:
-    /// The next move starts at `s`.
+    /// Removes all moves. The next move starts at path length `s`.
     void clear(double s = 0) noexcept {
         moves_.clear();
         start_s_ = s;
@@ -29,13 +29,13 @@ class ProgrammedPath {
     /// Removes the moves that end before `s`, except the last one.
     void drop_before(double s) noexcept;
     const std::vector<ProgrammedMove> &moves() const noexcept { return moves_; }
-    /// Place of its end.
+    /// Path length at its end.
     double length() const noexcept { return moves_.empty() ? start_s_ : moves_.back().end_s(); }
-    /// Index of the move at `s`, searched from the move `near` on.
+    /// Index of the move at `s`. `near`: index at which the search starts.
     std::size_t move_at(double s, std::size_t near) const noexcept;
-    /// On the move `index`.
+    /// Position at `s` on the move `index`.
     Pose position_at(std::size_t index, double s) const noexcept;
-    /// Mean position of [from, to]; `index`: the move at `from`.
+    /// Average position over [from, to]. `index`: the move at `from`.
     Pose mean(std::size_t index, double from, double to) const noexcept;
 
   private:

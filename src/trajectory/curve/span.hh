@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A stretch of a curve in nine coordinates, and a cell of the motion along it: what the executor evaluates.
+// A part of a curve in nine coordinates, and a cell of the motion along it. The executor evaluates both.
 #pragma once
 
 #include <array>
@@ -15,15 +15,15 @@ using geometry::Pose;
 inline constexpr int DEGREE = 5;
 inline constexpr std::size_t COEFFICIENTS = DEGREE + 1;
 
-/// Places this close are one [units], for planner and executor.
+/// Two values of s that differ by at most this count as equal, for planner and executor [unit].
 inline constexpr double SAME_PLACE = 1e-9;
 
-/// A stretch between two knots: q(s) is the sum of c[k] u^k, u = (s - start_s)/length in [0, 1].
+/// The curve between two knots: q(s) is the sum of c[k] u^k, u = (s - start_s)/length in [0, 1].
 struct Span {
     static constexpr std::uint32_t ALL = (1U << geometry::AXIS_COUNT) - 1U;
     double start_s = 0, length = 0;
     std::array<Pose, COEFFICIENTS> c{};
-    std::uint32_t moving = ALL;  ///< bit per coordinate; others have no derivatives
+    std::uint32_t moving = ALL;  ///< one bit per coordinate that moves; the others are constant
     double end_s() const noexcept { return start_s + length; }
     /// Sets `moving` from the coefficients.
     void find_moving() noexcept;
@@ -34,12 +34,12 @@ struct CurvePoint {
     Pose position, first, second, third;
 };
 
-/// [servo, planner] Position at `s` of a span.
+/// Position at `s` of a span. [servo, planner]
 Pose position_at(const Span &span, double s) noexcept;
-/// [planner] Position and derivatives at `s` of a span.
+/// Position and derivatives at `s` of a span. [planner]
 CurvePoint point_at(const Span &span, double s) noexcept;
 
-/// The place on the curve over the time: s(t) is a polynomial of degree five, t in [0, duration].
+/// Path position by time: s(t) is a polynomial of degree five, t in [0, duration] [s].
 struct TimeCell {
     double duration = 0;
     std::array<double, COEFFICIENTS> c{};

@@ -24,7 +24,7 @@ double KnotRow::curvature_shift(std::size_t i) const noexcept {
         const double d = at(static_cast<long>(i) - DEGREE + 1 + k) - centre;
         squares += d * d;
     }
-    // The sum over pairs of products is minus half of the sum of squares, as the deviations add up to 0.
+    // The deviations add up to 0, so the sum of the products of pairs is minus half of the sum of squares.
     return -0.5 * squares / (DEGREE * (DEGREE - 1) / 2);
 }
 
@@ -32,7 +32,7 @@ void KnotRow::weights(std::size_t span, Weights &w) const noexcept {
     const auto k = static_cast<long>(span);
     const double from = at(k);
     const double h = at(k + 1) - from;
-    // basis[j]: the function of degree p whose support begins at knot k - p + j, as a polynomial in u.
+    // basis[j]: the basis function of degree p whose support begins at knot k - p + j, as a polynomial in u.
     std::array<std::array<double, COEFFICIENTS>, COEFFICIENTS> basis{}, next{};
     basis[0][0] = 1;
     for (long p = 1; p <= DEGREE; ++p) {
@@ -40,7 +40,7 @@ void KnotRow::weights(std::size_t span, Weights &w) const noexcept {
             row.fill(0);
         }
         for (long j = 0; j < p; ++j) {
-            // The function basis[j] of degree p - 1 spans the knots left .. right.
+            // The basis function basis[j] of degree p - 1 is nonzero from knot `left` to knot `right`.
             const double left = at(k - p + 1 + j);
             const double right = at(k + 1 + j);
             const double per = 1.0 / (right - left);

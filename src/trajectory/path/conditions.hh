@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Conditions of a path besides its moves: limits, range of the machine, overrides, single block. Values;
-// every step of the planner's parts gets them.
+// Conditions of a path in addition to its moves: limits, workspace, overrides, single block. The parts of the
+// planner receive them as values in every step.
 #pragma once
 
 #include <array>
@@ -15,15 +15,15 @@ namespace mw::trajectory {
 
 class SpeedChooser;
 
-/// What may change while the path is under way.
+/// Overrides and spindle speeds, which may change during the path.
 struct Scales {
     double feed = 1.0;
     double rapid = 1.0;
-    double max_velocity = UNLIMITED;  ///< operator's ceiling along the feed length
+    double max_velocity = UNLIMITED;  ///< maximum velocity of the operator, along the feed length [unit/s]
     std::array<double, MAX_SPINDLES> spindle_rps{};
 };
 
-/// Single blocks: stops where the source block is another than `block`.
+/// Single block: the path stops before moves of any block other than `block`.
 struct SingleBlocks {
     bool isOn = false;
     std::uint32_t block = 0;
@@ -38,17 +38,17 @@ struct Conditions {
     Scales scales;
     SingleBlocks blocks;
     std::array<SpindleBrakings, MAX_SPINDLES> brakings{};
-    std::array<double, MAX_SPINDLES> encoder_steps{};  ///< [rev]
-    SpeedChooser *chooser = nullptr;                   ///< null: as fast as all that holds allows
+    std::array<double, MAX_SPINDLES> encoder_steps{};  ///< resolution of the encoder [rev]
+    SpeedChooser *chooser = nullptr;                   ///< null: no planner module
 
-    /// Driven by the executor, locked to the angle of a spindle. Machines whose joints are not axes drive
-    /// threads by time, but not taps.
+    /// True if the executor locks the move to the angle of a spindle. On machines whose joints are not axes,
+    /// threads are time-driven; taps are locked.
     bool isLocked(const MoveRequest &request) const noexcept {
         return request.isLocked && (request.isTapped || !workspace.isMapped());
     }
 };
 
-/// Speed of a move that follows a spindle, at the spindle's present speed, along the parameter.
+/// Speed along the parameter of a move with feed per revolution, at the current spindle speed.
 inline double turning_speed(const MoveRequest &move, const Scales &scales) noexcept {
     const double rps = std::abs(scales.spindle_rps[static_cast<std::size_t>(move.spindle)]);
     return move.feed_per_revolution * move.tag.feed_ratio * rps;

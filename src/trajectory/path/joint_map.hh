@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Machines whose joints are not axes: what the planner needs to keep the limits of each joint.
+// Inverse kinematics and joint limits, for machines whose joints are not axes.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace mw::trajectory {
 
-/// Pure; called from the planner's thread.
+/// Inverse kinematics. The function is pure. It is called in the planner thread.
 class JointMap {
   public:
-    /// The positions of all joints at a pose; false where there is none.
+    /// Calculates the positions of all joints at a pose. False if there is no solution.
     virtual bool joints_at(const geometry::Pose &pose, double *joints) const noexcept = 0;
 
   protected:
@@ -23,7 +23,7 @@ class JointMap {
 struct JointLimits {
     int count = 0;
     std::array<double, MAX_JOINTS> velocity{}, acceleration{}, jerk{};
-    std::array<double, MAX_JOINTS> low{}, high{};  ///< soft limits; +-infinity where none holds
+    std::array<double, MAX_JOINTS> low{}, high{};  ///< soft limits; +-infinity: none
 
     JointLimits() noexcept {
         low.fill(-std::numeric_limits<double>::infinity());

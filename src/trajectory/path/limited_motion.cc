@@ -6,16 +6,17 @@
 
 namespace mw::trajectory {
 
-// The acceleration rises to a peak in the direction of the change, stays there if the limit cuts it, and
-// falls to 0. Its integral is the change of speed: peak^2 = J dv + a^2 / 2.
+// The acceleration rises to a peak in the direction of the change, remains there if the limit caps the peak,
+// and falls to 0. Its integral is the change of speed: peak^2 = J dv + a^2 / 2.
 SpeedChange speed_change(const MotionState &from, double to_v, double acceleration, double jerk) noexcept {
     const double change = to_v - from.v;
-    const double by_itself = 0.5 * from.a * std::abs(from.a) / jerk;  // while the acceleration goes to 0
+    const double by_itself =
+        0.5 * from.a * std::abs(from.a) / jerk;  // change of speed while the acceleration goes to 0
     const double side = change >= by_itself ? 1.0 : -1.0;
     const double dv = side * change, a = side * from.a;
     const double free_peak = std::sqrt(std::max(0.0, jerk * dv + 0.5 * a * a));
     const double peak = std::max(std::min(free_peak, acceleration), 0.0);
-    // Without the time at the peak. An acceleration above the limit falls to it.
+    // Change of speed without the part at the peak. An acceleration above the limit falls to the limit.
     const double built = (peak >= a ? peak * peak - 0.5 * a * a : 0.5 * a * a) / jerk;
     const double held = peak > 0 && free_peak > acceleration ? std::max(0.0, (dv - built) / peak) : 0.0;
     SpeedChange out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Motion along one coordinate within velocity, acceleration and jerk: changes of speed in the least time.
+// Motion of one coordinate within velocity, acceleration and jerk: fastest changes of speed.
 #pragma once
 
 #include <array>
@@ -7,13 +7,13 @@
 
 namespace mw::trajectory {
 
-/// Units of the coordinate per s, s^2 and s^3, all above 0.
+/// Limits in units of the coordinate per s, s^2 and s^3, all above 0.
 struct MotionLimits {
     double velocity = 0, acceleration = 0, jerk = 0;
 };
 
-/// The jerk that a motion can use which is steered once in a servo cycle of `dt`: the acceleration turns over
-/// some cycles. Steered faster, it would swing between its limits.
+/// Usable jerk [unit/s^3] of a motion that is controlled once per servo cycle of `dt` [s]. The acceleration
+/// then takes several cycles to reach its limit. With more jerk it would oscillate between its limits.
 inline double usable_jerk(double jerk, double acceleration, double dt) noexcept {
     constexpr double CYCLES = 4;
     const double steered = acceleration / (CYCLES * dt);
@@ -23,7 +23,7 @@ inline double usable_jerk(double jerk, double acceleration, double dt) noexcept 
 struct MotionState {
     double x = 0, v = 0, a = 0;
 
-    /// With a constant jerk for the time `t`.
+    /// State after the time `t` [s] with constant jerk.
     MotionState after(double jerk, double t) const noexcept {
         return {x + t * (v + t * (0.5 * a + t * jerk / 6.0)), v + t * (a + 0.5 * t * jerk), a + t * jerk};
     }
@@ -34,7 +34,7 @@ inline double settled_speed(const MotionState &state, double jerk) noexcept {
     return state.v + 0.5 * state.a * (state.a < 0 ? -state.a : state.a) / jerk;
 }
 
-/// The fastest change to another speed, without acceleration at its end: parts of constant jerk.
+/// The fastest change to another speed, with acceleration 0 at its end. It has parts of constant jerk.
 struct SpeedChange {
     struct Part {
         double jerk = 0, duration = 0;
@@ -45,18 +45,18 @@ struct SpeedChange {
     double distance = 0;
 };
 
-/// From the speed and acceleration of `from` to the speed `to_v`. An acceleration above the limit is brought
-/// within it first.
+/// Change from the speed and acceleration of `from` to the speed `to_v`. If the acceleration exceeds its
+/// limit, it is reduced to the limit first.
 SpeedChange speed_change(const MotionState &from, double to_v, double acceleration, double jerk) noexcept;
 
-/// Follows the change for at most `left` [s]; returns the time that is left.
+/// Follows the change for at most `left` [s]. Returns the rest of this time, 0 if the change is not complete.
 double follow(MotionState &state, const SpeedChange &change, double left) noexcept;
 
-/// The highest value from `low` to `high` for which `is_allowed` holds, where it holds for every lower one;
-/// `low` if it holds for none.
+/// Largest value between `low` and `high` that is_allowed accepts, or `low` if it accepts none. If it accepts
+/// a value, it must accept every lower one.
 template <class IsAllowed>
 double highest_allowed(double low, double high, IsAllowed is_allowed) noexcept {
-    constexpr int STEPS = 32;  // below the rounding of what is compared
+    constexpr int STEPS = 32;  // the result is then exact to rounding
     if (!(low < high) || is_allowed(high)) {
         return low < high ? high : low;
     }
@@ -67,7 +67,7 @@ double highest_allowed(double low, double high, IsAllowed is_allowed) noexcept {
     return low;
 }
 
-/// A stop that has begun, or another change of speed: followed by its time.
+/// Follows a change of speed over several servo cycles.
 class SpeedChangeRun {
   public:
     void begin(const SpeedChange &change) noexcept {
@@ -75,13 +75,13 @@ class SpeedChangeRun {
         part_ = 0;
         time_ = 0;
     }
-    /// The state `dt` later; true once the change is complete, at its last speed.
+    /// Advances `state` by `dt` [s]. True when the change is complete; the state then has the final speed.
     bool advance(MotionState &state, double dt) noexcept;
 
   private:
     SpeedChange change_;
     std::size_t part_ = SpeedChange::PARTS;
-    double time_ = 0;  ///< in the part
+    double time_ = 0;  ///< time in the current part [s]
 };
 
 }  // namespace mw::trajectory

@@ -11,17 +11,17 @@ using geometry::AXIS_COUNT;
 
 namespace {
 
-/// Margin for rounding.
+/// Relative margin for rounding.
 constexpr double ACCELERATION_MARGIN = 1e-6;
-/// Parts of the maximum squared speed between which the remaining acceleration is a chord: denser where a
-/// concave bound falls fastest.
+/// Fractions of the maximum squared speed between which the remaining acceleration is replaced by a chord.
+/// They are denser where this concave function falls fastest.
 constexpr double CHORDS[] = {0, 0.5, 0.85, 1};
 
 double end_radius(const Primitive &p) noexcept {
     return p.radius + std::max(0.0, p.dradius * p.length);
 }
 
-/// Largest |cos| between two angles.
+/// Maximum |cos| between two angles.
 double largest_cosine(double from, double to) noexcept {
     const double low = std::min(from, to) / std::numbers::pi;
     const double high = std::max(from, to) / std::numbers::pi;
@@ -29,7 +29,7 @@ double largest_cosine(double from, double to) noexcept {
     return isTurningPoint ? 1.0 : std::max(std::abs(std::cos(from)), std::abs(std::cos(to)));
 }
 
-/// Acceleration that row `r` leaves along the path at the squared speed b.
+/// Path acceleration that row `r` allows at the squared speed b.
 double acceleration_left(const LimitRow &r, double b) noexcept {
     const double limit = r.acceleration * (1.0 - ACCELERATION_MARGIN);
     const double turning = r.q2 * b;
@@ -114,8 +114,8 @@ SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept 
             out.v = std::min(out.v, std::sqrt(r.acceleration * (1.0 - ACCELERATION_MARGIN) / r.q2));
         }
     }
-    // What is left for the path falls with b = v^2, and ever faster, so chords between points of it are on
-    // the safe side.
+    // The remaining path acceleration is a concave, decreasing function of b = v^2. So chords between its
+    // points are on the safe side.
     bool isTurning = false;
     for (int i = 0; i < count; ++i) {
         isTurning = isTurning || rows[i].q2 > 0;
@@ -139,7 +139,7 @@ SpeedLimit limit_of(const Primitive &p, double from, double to, const Limits &li
     derivative_bounds(p, from, to, q1, q2);
     LimitRow rows[LIMITED_COUNT];
     const int count = rows_of(q1, q2, limits, rows);
-    // The normal and the tangent of an arc are at right angles.
+    // The normal and the tangent of an arc are perpendicular.
     if (isNearlyCircle(p) && rows[count - 1].q2 == q2[XYZ_NORM] && q2[XYZ_NORM] > 0) {
         rows[count - 1].isRightAngled = true;
         rows[count - 1].acceleration *= 1.0 - askew_of(p);

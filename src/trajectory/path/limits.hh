@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speed and path acceleration of a stretch of path such that every axis keeps its limits. Planning side,
-// pure. Formulas: docs/developer/third_order.md.
+// Speed and path acceleration of a part of the path within the limits of every axis. For the planner; pure
+// functions. Formulas: docs/developer/third_order.md.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,16 @@
 
 namespace mw::trajectory {
 
-/// Limits of the axes, joints already folded in; UNLIMITED where nothing limits.
+/// Limits of the axes, including those of the joints; UNLIMITED: no limit.
 struct Limits {
-    PerLimited velocity{};      ///< [unit/s]; the last is the XYZ norm
+    PerLimited velocity{};      ///< [unit/s]; the last element is for the XYZ norm
     PerLimited acceleration{};  ///< [unit/s^2]
-    PerLimited jerk{};          ///< [unit/s^3]; used when `isJerkLimited`
+    PerLimited jerk{};          ///< [unit/s^3]; valid if `isJerkLimited`
     bool isJerkLimited = false;
 };
 inline constexpr double UNLIMITED = 1e300;
 
-/// Path acceleration that limits allow, by the squared speed b: the least of some lines alpha - beta b.
+/// Maximum path acceleration as a function of the squared speed b: the minimum of the lines alpha - beta b.
 struct AccelBound {
     static constexpr int LINES = 3;
     std::array<double, LINES> alpha{}, beta{};
@@ -29,9 +29,9 @@ struct AccelBound {
         bound.alpha.fill(a);
         return bound;
     }
-    /// Through what is left at some parts of the squared speed v^2.
+    /// Lines through the values `left` at fixed fractions of the squared speed v^2.
     static AccelBound through(const double (&left)[LINES + 1], double v) noexcept;
-    /// At the squared speed b, never negative.
+    /// Maximum path acceleration at the squared speed b; never negative.
     double at(double b) const noexcept {
         double a = alpha[0] - beta[0] * b;
         for (std::size_t k = 1; k < LINES; ++k) {
@@ -42,28 +42,28 @@ struct AccelBound {
     }
 };
 
-/// v: maximum speed along the parameter; a: path acceleration that may be used, by the speed squared.
+/// v: maximum speed along the parameter [1/s]; a: maximum path acceleration by the squared speed [1/s^2].
 struct SpeedLimit {
     double v = 0;
     AccelBound a;
 };
 
-/// Largest derivatives by the path's parameter of one limited coordinate on a stretch, and its limits.
+/// Limits of one coordinate, and the maximum of its derivatives by the path parameter on a part of the path.
 struct LimitRow {
     double q1 = 0, q2 = 0;
     double velocity = UNLIMITED, acceleration = UNLIMITED;
-    bool isRightAngled = false;  ///< q1 and q2 are lengths of vectors at right angles
+    bool isRightAngled = false;  ///< q1 and q2 are the lengths of perpendicular vectors
 };
 
-/// Largest |dq/ds| and |d2q/ds2| per coordinate on the part [from, to] of a primitive; the last of each are
-/// those of the XYZ norm.
+/// Calculates the maximum |dq/ds| and |d2q/ds2| of each coordinate on the part [from, to] of a primitive. The
+/// last elements are for the XYZ norm.
 void derivative_bounds(const Primitive &p, double from, double to, PerLimited &q1, PerLimited &q2) noexcept;
 
-/// Speeds and accelerations for which q1 v <= velocity and q1 |a| + q2 v^2 <= acceleration in every row, up
-/// to the requested speed `wish`.
+/// Maximum speed, up to the requested speed `wish`, and path acceleration for which every row has q1 v <=
+/// velocity and q1 |a| + q2 v^2 <= acceleration.
 SpeedLimit limit_of_rows(const LimitRow *rows, int count, double wish) noexcept;
 
-/// The same on the part [from, to] of a primitive.
+/// The same for the part [from, to] of a primitive.
 SpeedLimit limit_of(const Primitive &p, double from, double to, const Limits &limits, double wish) noexcept;
 
 }  // namespace mw::trajectory

@@ -14,13 +14,13 @@ namespace {
 using Joints = std::array<double, MAX_JOINTS>;
 using Tuning = LineJointTuning;
 
-/// Derivatives by finite differences of five samples around x; q(x + n h) is at[n + 2].
+/// Derivatives at x from finite differences of five samples: at[n + 2] is q(x + n h).
 LineJoints::Row derivatives(const std::array<Joints, 5> &at, std::size_t j, double h) noexcept {
     const auto q = [&](int n) { return at[static_cast<std::size_t>(n + 2)][j]; };
     const auto above = [](double value, double rounding) {
         return std::max(0.0, std::abs(value) - rounding);
     };
-    // Accuracy of a joint position from the samples.
+    // Error of a sample.
     const double noise = Tuning::ROUNDING * (1.0 + std::abs(q(0)));
     return {std::abs(q(1) - q(-1)) / (2.0 * h), above(q(1) - 2.0 * q(0) + q(-1), 4.0 * noise) / (h * h),
             above(q(2) - 2.0 * q(1) + 2.0 * q(-1) - q(-2), 6.0 * noise) / (2.0 * h * h * h)};
@@ -47,7 +47,7 @@ LineJoints joints_along(const Workspace &workspace, const Primitive &line, doubl
         }
     }
     for (LineJoints::Row &row : out.rows) {
-        // Each grows by the next one from a place to the middle between two.
+        // Between two samples, a derivative can change by the next derivative times half of their distance.
         row.q3 *= Tuning::MARGIN;
         row.q2 = Tuning::MARGIN * row.q2 + 0.5 * gap * row.q3;
         row.q1 = Tuning::MARGIN * row.q1 + 0.5 * gap * row.q2;
@@ -67,7 +67,8 @@ double LineJoints::most_speed(const JointLimits &joints) const noexcept {
     return v;
 }
 
-// With x the way along the line: q' x'' + q'' x'^2 <= A and q' x''' + 3 q'' x' x'' + q''' x'^3 <= J.
+// Limits of a joint, with x the position along the line: q' x'' + q'' x'^2 <= A and
+// q' x''' + 3 q'' x' x'' + q''' x'^3 <= J.
 MotionLimits LineJoints::limits_at(const JointLimits &joints, double v, bool has_jerk_limits) const noexcept {
     MotionLimits out{v, UNLIMITED, UNLIMITED};
     const auto count = static_cast<std::size_t>(joints.count);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What joints that are not axes do along a line that is driven to and fro, as a tap is. Planning side, pure.
+// Motion of joints that are not axes along a line that is traversed in both directions, as in a tap. For the
+// planner; pure functions.
 #pragma once
 
 #include "trajectory/path/limited_motion.hh"
@@ -7,22 +8,23 @@
 
 namespace mw::trajectory {
 
-/// Largest derivatives of each joint by the way along a line.
+/// Maximum derivatives of each joint by the position along a line.
 struct LineJoints {
     struct Row {
         double q1 = 0, q2 = 0, q3 = 0;
     };
     std::array<Row, MAX_JOINTS> rows{};
-    bool isReachable = false;  ///< all of it
+    bool isReachable = false;  ///< the joints can reach the whole line
 
-    /// Maximum speed along the line at which the joints still have an acceleration.
+    /// Maximum speed along the line at which the joints have acceleration and jerk left for changes of speed
+    /// [unit/s].
     double most_speed(const JointLimits &joints) const noexcept;
-    /// Acceleration and jerk along the line that the joints can do in either direction at every speed up to
+    /// Acceleration and jerk along the line within the joint limits, in both directions, at every speed up to
     /// `v`. Without jerk limits the jerk is UNLIMITED.
     MotionLimits limits_at(const JointLimits &joints, double v, bool has_jerk_limits) const noexcept;
 };
 
-/// On the part [from, to] of a line, which may extend past its ends. By differences of the inverse
+/// Evaluates the part [from, to] of a line, which may extend past its ends, by differences of the inverse
 /// kinematics.
 LineJoints joints_along(const Workspace &workspace, const Primitive &line, double from, double to) noexcept;
 

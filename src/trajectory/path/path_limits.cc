@@ -7,13 +7,13 @@ namespace mw::trajectory {
 
 namespace {
 
-/// Deviation of the curve without a programmed tolerance: part of a line's length, of an arc's radius, and at
-/// least the distance in this time at maximum speed.
+/// Default deviation of the curve if no tolerance is programmed: a part of the length of a line or of the
+/// radius of an arc, and at least the distance in NOMINAL_S at maximum speed.
 constexpr double FREE_OF_LENGTH = 0.1, FREE_OF_RADIUS = 1e-3, NOMINAL_S = 1e-4;
-/// Without jerk limits: at most what a corner of 90 degrees needs at the programmed speed with 0.7 of the
-/// acceleration, (v^2 sqrt(2)/(1.4 a)) sqrt(2)/4.
+/// Maximum default deviation without jerk limits: the deviation of a corner of 90 degrees at the programmed
+/// speed with 0.7 of the acceleration, (v^2 sqrt(2)/(1.4 a)) sqrt(2)/4.
 constexpr double FREE_OF_CORNER = 0.5 / 1.4;
-/// And at least [machine units]: a shorter corner takes less than a servo period.
+/// Minimum default deviation [machine units]: a smaller corner takes less than a servo period.
 constexpr double LEAST_FREE = 1e-5;
 
 }  // namespace

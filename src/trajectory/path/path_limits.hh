@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The limits of the axes that moves are made for.
+// Axis limits for which moves are planned.
 #pragma once
 
 #include "trajectory/path/limits.hh"
@@ -10,10 +10,10 @@ class PathLimits {
   public:
     explicit PathLimits(double period_s) noexcept;
 
-    /// Holds for moves added from now on.
+    /// Sets the limits for moves that are added after this call.
     void set(const Limits &limits) noexcept;
-    /// Maximum deviation of the curve on a move without a programmed tolerance, at `speed` along its
-    /// parameter (0: as fast as the limits allow).
+    /// Maximum deviation of the curve on a move without a programmed tolerance [unit]. `speed` is along its
+    /// parameter; 0: no feed, only the limits.
     double free_tolerance(const Primitive &primitive, double speed) const noexcept;
 
     const Limits &wanted() const noexcept { return wanted_; }
@@ -22,7 +22,7 @@ class PathLimits {
   private:
     double period_s_;
     Limits wanted_;
-    double nominal_tolerance_ = 0;  ///< of moves without one on a path with jerk limits, at least
+    double nominal_tolerance_ = 0;  ///< minimum default deviation [unit]
 };
 
 }  // namespace mw::trajectory

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The path as the planner knows it: a ring of moves by number, beside those that the executor reads.
+// Path data of the planner: a ring of moves by number, in addition to the moves that the executor reads.
 #pragma once
 
 #include <algorithm>
@@ -10,25 +10,25 @@
 
 namespace mw::trajectory {
 
-/// A move besides its primitive.
+/// Data of a move in addition to its primitive.
 struct PlannedMove {
-    double feed = 0;          ///< requested speed in s [1/s]; 0: none
-    double chosen_speed = 0;  ///< by a planner module, in s [1/s]; 0: none
-    double start_s = 0;       ///< where the move begins on the programmed path
+    double feed = 0;          ///< requested speed along s [1/s]; 0: none
+    double chosen_speed = 0;  ///< speed along s chosen by a planner module [1/s]; 0: none
+    double start_s = 0;       ///< start of the move on the programmed path
     MoveRequest request;
 };
 
-/// Plain tables. Some megabytes, so never on a stack.
+/// Ring of moves. Its size is several megabytes: do not put it on a stack.
 class PlannedPath {
   public:
     explicit PlannedPath(PathStore &store) noexcept : store_(store) {}
 
-    /// Another path begins behind all that there was.
+    /// Begins a new path after all earlier moves.
     void begin() noexcept { first_move_ = last_move_ + 1; }
     Sequence first_move() const noexcept { return first_move_; }
-    /// Of all paths; one that was dropped is never done.
+    /// Number of the last move of all paths. A move of a dropped path is never completed.
     Sequence last_move() const noexcept { return last_move_; }
-    /// Of this path, 0 as long as it has none.
+    /// Number of the last move of this path; 0: none.
     Sequence end_move() const noexcept { return last_move_ < first_move_ ? 0 : last_move_; }
 
     PlannedMove &move(Sequence n) noexcept { return moves_[n % PRIMITIVE_CAPACITY]; }
@@ -38,9 +38,9 @@ class PlannedPath {
     const PathStore &store() const noexcept { return store_; }
     PathStore &store() noexcept { return store_; }
 
-    /// Appends an empty move; its primitive and tag are the caller's to fill.
+    /// Appends an empty move. The caller fills its primitive and tag.
     Sequence append_move() noexcept { return ++last_move_; }
-    /// Length of what has been programmed since the path began.
+    /// Programmed length of this path until now.
     double programmed_length() const noexcept {
         return last_move_ < first_move_ ? 0.0 : move(last_move_).start_s + primitive(last_move_).length;
     }

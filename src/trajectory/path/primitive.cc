@@ -103,9 +103,9 @@ FeedLength feed_length(const Primitive &p) noexcept {
 
 namespace {
 
-/// How far an extreme of a coordinate may exceed that of its circular part alone, where the rest of it has
-/// the slope `drift`: at most the drift of half a revolution; where it is slight, twice the drift on a
-/// parabola of the least curvature there.
+/// Bound of the distance by which an extreme of a coordinate exceeds that of its circular part. `drift` is
+/// the slope of the other part. The bound is the drift during half a revolution. If the drift is slight, it
+/// is the effect of twice this drift on a parabola with the minimum curvature.
 double turning_margin(const Primitive &p, double amplitude, double drift) noexcept {
     constexpr double SLIGHT = 0.1;
     const double most = drift * std::min(p.length, std::numbers::pi / std::abs(p.omega));
@@ -128,13 +128,13 @@ void extent(const Primitive &p, Pose &low, Pose &high) noexcept {
     const double from = std::min(0.0, sweep);
     const double to = std::max(0.0, sweep);
     for (int i = 0; i < 3; ++i) {
-        // The circular part of a coordinate is largest or smallest at phase + n half turns. Its linear part
-        // moves the true turning points a little along: `margin` keeps the box outside.
+        // The circular part of a coordinate has its extremes at phase + n half revolutions. The linear part
+        // shifts them slightly. `margin` is the bound of this effect.
         const auto k = static_cast<std::size_t>(i);
         const int axis = p.space + i;
         const double amplitude = std::hypot(p.u[k], p.v[k]);
         if (amplitude == 0.0) {
-            continue;  // along the normal there is no circle: the ends are all there is
+            continue;  // normal direction: no circular part, so the extremes are at the ends
         }
         const double drift = std::abs(p.lin[axis]) + std::abs(p.dradius) * amplitude;
         const double margin = turning_margin(p, amplitude, drift);
@@ -162,7 +162,7 @@ struct ArcSum {
     double at(double s) const noexcept {
         return base + lin * s + (arc.radius + arc.dradius * s) * amplitude * std::cos(arc.omega * s - phase);
     }
-    /// The place nearest to `s` where it turns back, by Newton's method.
+    /// Position near `s` where the coordinate has an extreme, by Newton's method.
     double turn_near(double s) const noexcept {
         constexpr int STEPS = 5;
         for (int n = 0; n < STEPS; ++n) {
@@ -196,15 +196,15 @@ void extent_along(const Primitive &p, const Pose &slope, double &low, double &hi
     low = std::min(start, end);
     high = std::max(start, end);
     const ArcSum sum = p.isArc ? sum_along(p, slope) : ArcSum{p};
-    // With the radius of the middle it turns where sin(omega s - phase - lead) = level; Newton's method does
-    // the rest. `AROUND`: what that may move a place by [rad].
+    // With the radius of the middle, the coordinate has an extreme where sin(omega s - phase - lead) = level.
+    // Newton's method corrects it. AROUND is the maximum correction [rad].
     constexpr double AROUND = 0.2;
     constexpr double TURN = 2.0 * std::numbers::pi;
     constexpr int MOST_TURNS = 100000;
     const double turning = (p.radius + 0.5 * p.dradius * p.length) * p.omega;
     const double lead = std::atan2(p.dradius, turning);
     const double level = sum.lin / (sum.amplitude * std::hypot(turning, p.dradius));
-    constexpr double HARDLY = 1.2;  // above it the coordinate has one direction only
+    constexpr double HARDLY = 1.2;  // above this level the coordinate is monotonic
     if (!p.isArc || sum.amplitude == 0.0 || !(std::abs(level) < HARDLY)) {
         return;
     }
@@ -224,7 +224,7 @@ void extent_along(const Primitive &p, const Pose &slope, double &low, double &hi
 }
 
 double askew_of(const Primitive &arc) noexcept {
-    // The tangent by dr / (r omega), the second derivative, 2 dr omega of r omega^2, by twice that.
+    // The tangent is off by dr / (r omega), the second derivative by twice that (2 dr omega of r omega^2).
     constexpr double OF_DRIFT = 4.0;
     const double radius = std::min(arc.radius, arc.radius + arc.dradius * arc.length);
     const double round = radius * std::abs(arc.omega);
@@ -274,7 +274,7 @@ ArcFault make_arc(const Pose &start, const Pose &end, const ArcShape &shape, Pri
     p.v = cross3(n, p.u);
     const double c = std::cos(shape.angle_rad);
     const double s = std::sin(shape.angle_rad);
-    Pose rest = end - start;  // what is left for the linear part once the circle has done its share
+    Pose rest = end - start;  // linear part: the difference of the ends without the circular part
     Vec3 off{};
     for (std::size_t i = 0; i < 3; ++i) {
         const double circle = radius1 * (p.u[i] * c + p.v[i] * s) - r0[i];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Elements of a path: straight lines and helices in nine coordinates, by one parameter s.
-// Realtime-safe, pure. Lengths in machine units, angles of the pose in degrees, s in both mixed (see
+// Elements of a path: straight lines and helices in nine coordinates, with one parameter s. Realtime-safe,
+// pure. Lengths are in machine units, angles of the pose in degrees; s is in a mixture of both (see
 // README.md).
 #pragma once
 
@@ -12,8 +12,8 @@ namespace mw::trajectory {
 
 using geometry::Pose;
 
-/// The nine coordinates, and as the tenth the Euclidean norm over X Y Z, for which the machine has limits
-/// too.
+/// The nine coordinates, and the Euclidean norm over X Y Z as the tenth, because the machine also has limits
+/// for it.
 inline constexpr int LIMITED_COUNT = geometry::AXIS_COUNT + 1;
 inline constexpr int XYZ_NORM = geometry::AXIS_COUNT;
 using PerLimited = std::array<double, LIMITED_COUNT>;
@@ -37,26 +37,27 @@ struct Primitive {
 /// dq/ds at `s`. [servo, planner]
 Pose derivative_at(const Primitive &p, double s) noexcept;
 
-/// Largest curvature vector |d2q/ds2| over the primitive, per coordinate and for the XYZ norm.
+/// Bound of the second derivative |d2q/ds2| over the primitive, per coordinate and for the XYZ norm.
 PerLimited second_derivative_bound(const Primitive &p) noexcept;
 
-/// The length that a feed counts: over X Y Z if they move, else over U V W, else over A B C (`isAngular`).
+/// The length along which a feed counts: over X Y Z if they move, else over U V W, else over A B C
+/// (`isAngular`).
 struct FeedLength {
     double length = 0;
     bool isAngular = false;
 };
 FeedLength feed_length(const Primitive &p) noexcept;
 
-/// Smallest box that holds the whole primitive: [low, high] per coordinate.
+/// Calculates a box that contains the primitive: [low, high] per coordinate.
 void extent(const Primitive &p, Pose &low, Pose &high) noexcept;
-/// The same of slope . q, such as a joint that goes in proportion to axes.
+/// The same for slope . q, such as a joint that moves in proportion to axes.
 void extent_along(const Primitive &p, const Pose &slope, double &low, double &high) noexcept;
 
-/// How far from a right angle an arc's tangent and its second derivative may be [rad]: by what its radius
-/// drifts.
+/// Maximum deviation from a right angle between the tangent and the second derivative of an arc [rad], caused
+/// by the change of its radius.
 double askew_of(const Primitive &arc) noexcept;
-/// Radii in programs are rounded: such an arc counts as a circle, with what it may be askew taken off the
-/// acceleration.
+/// True if the arc counts as a circle although its radii differ by rounding. The deviation askew_of() is
+/// subtracted from its acceleration.
 inline bool isNearlyCircle(const Primitive &p) noexcept {
     constexpr double MOST_ASKEW = 4e-3;
     return p.isArc && askew_of(p) < MOST_ASKEW;
@@ -74,8 +75,8 @@ struct ArcShape {
 
 enum class ArcFault { NONE, BAD_NORMAL, NO_RADIUS, RADII_DIFFER, END_OFF_CIRCLE };
 
-/// A helix from `start` to `end`. The radius may change by up to `MAX_RADIUS_CHANGE` of itself on the way,
-/// and a small mismatch of the end is spread over the sweep, so that both ends are met exactly.
+/// Makes a helix from `start` to `end`. The radius may change by up to the fraction MAX_RADIUS_CHANGE. A
+/// small error of the end is distributed over the sweep, so both ends are exact.
 inline constexpr double MAX_RADIUS_CHANGE = 0.05;
 ArcFault make_arc(const Pose &start, const Pose &end, const ArcShape &shape, Primitive &out) noexcept;
 

@@ -8,7 +8,7 @@ namespace mw::trajectory {
 
 namespace {
 
-/// What rounding may make of a figure, as a share of it.
+/// Relative error by rounding.
 constexpr double ROUNDING = 1e-9;
 
 bool isOver(double value, double most) noexcept {
@@ -39,7 +39,7 @@ Overreach check_choice(const SpeedStretch &stretch, const AccelBound &bound,
         const double change = std::abs(phase.speed * phase.speed - speed * speed);
         const double top = std::max(speed, phase.speed);
         const double most = 2.0 * phase.length * bound.at(top * top);
-        // What a speed of 1e-9 of the cap makes is rounding as well.
+        // A change by 1e-9 of the maximum speed is also rounding.
         if (isOver(change, most + 2.0 * ROUNDING * stretch.cap * stretch.cap)) {
             return {Kind::TOO_HARD, phase.length > 0 ? change / most : HUGE_VAL};
         }

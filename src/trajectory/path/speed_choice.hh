@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speeds chosen by a user's planner module. They are checked before they are used.
+// Speeds chosen by a user's planner module. They are checked before use.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,12 @@
 
 namespace mw::trajectory {
 
-/// What is left of a piece, and what may be chosen; see mw_tp_stretch. Speeds along the path [1/s].
+/// The remaining part of a segment, and the limits for the choice; see mw_tp_stretch. Speeds are along the
+/// path [1/s].
 struct SpeedStretch {
     double length = 0;
     double speed = 0, cap = 0, out = 0;
-    double at_rest = 0, at_cap = 0;  ///< accelerations [1/s^2]
+    double at_rest = 0, at_cap = 0;  ///< maximum accelerations at speed 0 and at speed `cap` [1/s^2]
     std::int32_t line = 0;
     bool isEnd = false;
 };
@@ -28,29 +29,30 @@ inline constexpr std::size_t CHOSEN_PHASES = 8;
 
 class SpeedChooser {
   public:
-    /// Fills `out`; how many. [planner thread]
+    /// Writes the chosen phases to `out` and returns their number. [planner thread]
     virtual int choose(const SpeedStretch &stretch, std::span<ChosenPhase> out) noexcept = 0;
 
   protected:
     ~SpeedChooser() = default;
 };
 
-/// What is wrong with a choice.
+/// The error of a choice.
 struct Overreach {
     enum class Kind : std::uint8_t {
         NONE,
-        NO_ANSWER,  ///< no phases, more than fit, or a value that is no number
-        TOO_FAST,   ///< value: the speed over the maximum
-        TOO_HARD,   ///< value: the acceleration over the maximum
-        TOO_LATE,   ///< value: the speed at the end over the maximum there
-        NOT_THERE,  ///< stops before the end, or the lengths do not add up to the segment
+        NO_ANSWER,  ///< no phases, more phases than fit, or a value that is not a number
+        TOO_FAST,   ///< value: speed divided by the maximum
+        TOO_HARD,   ///< value: acceleration divided by the maximum
+        TOO_LATE,   ///< value: speed at the end divided by the maximum there
+        NOT_THERE,  ///< the motion stops before the end, or the sum of the lengths is not the length of the
+                    ///< segment
     };
     Kind kind = Kind::NONE;
     double value = 0;
     Sequence move = 0;
 };
 
-/// `bound`: of the piece. `chosen` are what `choose` gave.
+/// Checks the phases `chosen` that choose() returned. `bound`: maximum acceleration of the segment.
 Overreach check_choice(const SpeedStretch &stretch, const AccelBound &bound,
                        std::span<const ChosenPhase> chosen) noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// How a spindle stops when it is commanded to reverse. Formulas: docs/integrator/spindles.md.
+// Braking of a spindle that is commanded to reverse. Formulas: docs/integrator/spindles.md.
 #pragma once
 
 #include <algorithm>
@@ -8,20 +8,20 @@
 
 namespace mw::trajectory {
 
-/// The spindle keeps its speed during the delay of its drive, then changes it with a constant ramp.
+/// The spindle keeps its speed during the delay of its drive. Then its speed changes with a constant ramp.
 struct SpindleBraking {
     double delay_s = 0;
     double ramp = 0;  ///< [rev/s^2]; 0: not known
 
     bool isKnown() const noexcept { return ramp > 0; }
-    /// Revolutions from the command to reverse until standstill; 0 if not known.
+    /// Revolutions from the reverse command to standstill; 0 if not known.
     double overrun(double rps) const noexcept {
         const double v = std::abs(rps);
         return isKnown() ? v * (delay_s + 0.5 * v / ramp) : 0.0;
     }
 };
 
-/// From running with the counts, and against them.
+/// Braking from forward rotation, and from reverse rotation.
 using SpindleBrakings = std::array<SpindleBraking, 2>;
 
 inline const SpindleBraking &braking_at(const SpindleBrakings &brakings, double rps) noexcept {
@@ -36,10 +36,10 @@ struct MeasuredReversal {
     double resolution_s = 0;  ///< resolution of the braking time
 };
 
-/// Both constants from one reversal: the average speed while braking is half of `rps`, so it took
-/// `2 (standstill_s - overrun/rps)`. For any measured time, the delay is neither negative nor longer than
-/// the overrun allows. Thus the result has exactly the measured overrun at `rps`, and the overrun at any
-/// other speed lies between what grows with the speed and what grows with its square.
+/// Calculates delay and ramp from one reversal. The average speed while braking is half of `rps`, so braking
+/// takes `2 (standstill_s - overrun/rps)`. The delay is clamped to the range that the overrun allows. So the
+/// result reproduces the measured overrun at `rps`. At other speeds the overrun lies between a linear and a
+/// quadratic function of the speed.
 inline SpindleBraking braking_of(const MeasuredReversal &m) noexcept {
     const double at_full_speed_s = m.overrun / m.rps;
     const double longest_s = 2.0 * at_full_speed_s;

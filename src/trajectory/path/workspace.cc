@@ -23,10 +23,10 @@ bool Workspace::holds(const Pose &pose) const noexcept {
     return isInside;
 }
 
-/// How far the joints are from those at `pose` within the tolerance in each coordinate, at most. False where
-/// there are no joints.
+/// Raises `reach` to the maximum change of each joint when each coordinate of `pose` changes by up to the
+/// tolerance. False if the kinematics has no solution.
 bool Workspace::take_reach(const Pose &pose, double tolerance, PerJoint &reach) const noexcept {
-    // Joints move by less than twice of what they do at the middle of a tolerance.
+    // Bound of the change within the tolerance, relative to the change between its ends.
     constexpr double MARGIN = 2;
     PerJoint at{}, sum{};
     bool exists = map->joints_at(pose, at.data());
@@ -47,7 +47,8 @@ bool Workspace::take_reach(const Pose &pose, double tolerance, PerJoint &reach) 
     return exists;
 }
 
-/// The least part of the reach of a joint that is left to its soft limits along the move.
+/// Minimum distance of the joints to their soft limits along the move, as a fraction of their `reach`; 0
+/// to 1.
 double Workspace::least_share(const Primitive &move, int samples, const PerJoint &reach) const noexcept {
     double share = 1;
     PerJoint before{};
@@ -57,7 +58,7 @@ double Workspace::least_share(const Primitive &move, int samples, const PerJoint
             return 0;
         }
         for (std::size_t j = 0; j < static_cast<std::size_t>(joints.count); ++j) {
-            // Between two samples a joint does not exceed them by more than it changed.
+            // Between two samples, a joint exceeds them by at most its change.
             const double step = n > 0 ? std::abs(at[j] - before[j]) : 0.0;
             const double left = std::min(at[j] - low_of(j), high_of(j) - at[j]) - step;
             share = !isLinear(j) && left < reach[j] ? std::min(share, left / reach[j]) : share;
@@ -68,7 +69,7 @@ double Workspace::least_share(const Primitive &move, int samples, const PerJoint
 }
 
 double Workspace::tolerance_within(const Primitive &move, double tolerance) const noexcept {
-    // Few samples where the joints are far from their limits; as many as the check of the move takes if not.
+    // FEW samples if the joints are far from their limits, otherwise as many as the check of the move takes.
     constexpr int FEW = 9, MANY = 65;
     constexpr double PER_RAD = 1.5, MOST = 2000;
     const bool is_linear = (~linear.joints & ((1U << joints.count) - 1U)) == 0;
@@ -81,7 +82,7 @@ double Workspace::tolerance_within(const Primitive &move, double tolerance) cons
             return 0;
         }
     }
-    // Too few samples on many turns make the steps large and the share small.
+    // With too few samples on an arc of many revolutions, the steps are large and the share is too small.
     const int turns = static_cast<int>(std::min(std::abs(move.omega) * move.length * PER_RAD, MOST));
     const double share = least_share(move, std::max(FEW, turns), reach);
     return tolerance * (share < 1 ? least_share(move, std::max(MANY, 8 * turns), reach) : share);

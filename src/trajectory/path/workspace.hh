@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where the machine may go: soft limits of the axes, and joints that are not axes.
+// Workspace of the machine: soft limits of the axes and of joints that are not axes.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace mw::trajectory {
 
-/// Where some joints are kept, within their soft limits.
+/// Ranges of some joints within their soft limits.
 struct JointRoom {
     std::uint32_t joints = 0;  ///< bit per joint
     std::array<double, MAX_JOINTS> low{}, high{};
@@ -23,28 +23,28 @@ struct LinearJoints {
 };
 
 struct Workspace {
-    Pose low, high;                 ///< soft limits of the axes; the path stays within them
-    const JointMap *map = nullptr;  ///< null: the axes' limits are all there are
-    JointLimits joints;             ///< with a map
-    JointRoom joint_room;           ///< the same
-    LinearJoints linear;            ///< the same
+    Pose low, high;                 ///< soft limits of the axes, which the path does not exceed
+    const JointMap *map = nullptr;  ///< null: only the limits of the axes apply
+    JointLimits joints;             ///< valid with a map
+    JointRoom joint_room;           ///< valid with a map
+    LinearJoints linear;            ///< valid with a map
 
     Workspace() noexcept {
         low.c.fill(-UNLIMITED);
         high.c.fill(UNLIMITED);
     }
     bool isMapped() const noexcept { return map != nullptr; }
-    /// Where a joint may be.
+    /// Lower and upper limit of a joint.
     double low_of(std::size_t joint) const noexcept {
         return isKept(joint) ? joint_room.low[joint] : joints.low[joint];
     }
     double high_of(std::size_t joint) const noexcept {
         return isKept(joint) ? joint_room.high[joint] : joints.high[joint];
     }
-    /// Within the soft limits of the axes and the room of joints that have one.
+    /// True if the pose is within the soft limits of the axes and the ranges of joints.
     bool holds(const Pose &pose) const noexcept;
-    /// The largest part of `tolerance` that a path may deviate from a move without leaving the soft limits of
-    /// joints that are not linear; 0 where the move itself is at one of them.
+    /// Maximum deviation of a path from a move, up to `tolerance`, that keeps joints that are not linear
+    /// within their soft limits; 0 if the move itself reaches a limit.
     double tolerance_within(const Primitive &move, double tolerance) const noexcept;
 
   private:

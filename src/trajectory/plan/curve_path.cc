@@ -8,11 +8,11 @@ namespace mw::trajectory::plan {
 
 namespace {
 
-/// Largest knot spacing and span [machine units]: where the tolerance allows more, nothing is gained.
+/// Maximum knot spacing and span length [machine units]. Larger values bring no gain.
 constexpr double WIDEST = 3.0;
-/// Part of the tolerance with which a curve is not better than the programmed path.
+/// Below this fraction of the tolerance, the move is followed exactly.
 constexpr double LEAST_TOLERANCE = 0.1;
-/// Spans and moves that are known and not driven, at most: memory.
+/// Maximum numbers of spans and moves that are known and not yet executed. They limit the memory.
 constexpr std::size_t MOST_SPANS = SPAN_CAPACITY / 2;
 constexpr Sequence MOST_MOVES = PRIMITIVE_CAPACITY - 64;
 
@@ -26,7 +26,8 @@ profile::CurveLimits curve_limits(const Limits &limits) noexcept {
     return out;
 }
 
-/// `start`: a pose with joints.
+/// Soft limits of the axes and of joints in proportion to them. The kinematics must have a solution at
+/// `start`.
 curve::Room room_at(const Workspace &workspace, const Pose &start) noexcept {
     curve::Room room{workspace.low, workspace.high, {}};
     std::array<double, MAX_JOINTS> at{};
@@ -43,7 +44,7 @@ curve::Room room_at(const Workspace &workspace, const Pose &start) noexcept {
     return room;
 }
 
-/// A move of a pass at the present speed of its spindle.
+/// A move of a pass at the current spindle speed.
 PassMove pass_move(const PlannedMove &move, const Primitive &primitive,
                    const Conditions &conditions) noexcept {
     const MoveRequest &request = move.request;
@@ -146,8 +147,8 @@ Sequence CurvePath::add(const Conditions &conditions, const Primitive &primitive
     return n;
 }
 
-/// Passes stop at their ends, and where their corners cannot be driven; in any other mode of path control
-/// their corners are passed, because a thread cannot wait.
+/// A pass stops at its ends and at corners that need a stop. It passes other corners in any path mode,
+/// because a thread cannot wait.
 bool CurvePath::isStopBefore(const Conditions &conditions, const PlannedMove &last, const PlannedMove &move,
                              Rule rule) const noexcept {
     if (isStopBetween(last.request, move.request) ||
@@ -174,7 +175,7 @@ void CurvePath::begin_part() {
     }
 }
 
-/// Returns the length of the move along the curve.
+/// Adds a move to the open part. Returns its length along the curve.
 double CurvePath::append(const Conditions &conditions, const PlannedMove &move, const Primitive &primitive,
                          double tolerance) {
     switch (rule_) {
@@ -256,7 +257,7 @@ void CurvePath::take_spans(const Conditions &conditions) {
     publish();
 }
 
-/// Spans that have not been driven are not overwritten.
+/// Copies spans to the store. Spans that are not yet executed are not overwritten.
 void CurvePath::publish() {
     const std::size_t count = std::min(coming_.size(), SPAN_CAPACITY - 1 - spans_.size());
     for (std::size_t k = 0; k < count; ++k) {
@@ -286,14 +287,14 @@ void CurvePath::add_stop(double s) {
 }
 
 void CurvePath::drop_before(double s) {
-    // Spans and moves apart: a span may hold many moves. The last move stays.
+    // Spans and moves are dropped separately, because a span may contain many moves. The last move remains.
     const Sequence last = first_move() + std::max<std::size_t>(feeds().size(), 1) - 1;
     feeds_.drop_before(std::min(move_at(s), last));
     const auto driven = static_cast<std::size_t>(
         std::partition_point(spans_.begin(), spans_.end(), [&](const auto &x) { return x.end_s() < s; }) -
         spans_.begin());
     if (4 * driven <= spans_.size()) {
-        return;  // all that stay are moved
+        return;  // dropping fewer spans is not worth moving the rest
     }
     const std::size_t spans = std::min(driven, spans_.size() - 1);
     spans_.erase(spans_.begin(), spans_.begin() + static_cast<long>(spans));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// From moves to a curve: spans, seams between them, places of stops, and the feeds of the moves.
+// Makes a curve of the moves: spans, seams between them, positions of stops, and the feeds of the moves.
 #pragma once
 
 #include <deque>
@@ -17,62 +17,62 @@ namespace mw::trajectory::plan {
 
 using curve::SAME_PLACE;
 
-/// Planner thread. Moves with a tolerance are fitted, the others are followed exactly. A part of the path
-/// with one of the two rules ends on the programmed path.
+/// Use it in the planner thread only. Moves with a tolerance are fitted, the others are followed exactly.
+/// Where this rule changes, the curve is on the programmed path.
 class CurvePath {
   public:
     CurvePath(PathStore &store, PlannedPath &moves);
 
-    /// A path begins at `start`, at the place 0.
+    /// Begins a path at `start`, with s = 0.
     void begin(const Pose &start, const Conditions &conditions);
-    /// It has no move so far.
+    /// True if the path has no move.
     bool isEmpty() const noexcept { return feeds().empty(); }
     /// Appends a move that starts at `end()`. Returns its number.
     Sequence add(const Conditions &conditions, const Primitive &primitive, const MoveRequest &request);
-    /// Nothing follows for now: the curve ends at the end of the last move.
+    /// No move follows now: the curve ends at the end of the last move.
     void release_end(const Conditions &conditions);
-    /// Makes spans of the moves that were added.
+    /// Makes spans of the added moves.
     void extend(const Conditions &conditions);
-    /// The motion is behind `s`.
+    /// Drops spans and moves before `s`, where the motion is.
     void drop_before(double s);
     bool hasRoom() const noexcept;
 
     const Pose &end() const noexcept { return end_; }
-    /// The pass that begins at `s`: its legs, and the limits that all of them keep. None as long as it
-    /// may still grow.
+    /// The pass that begins at `s`: its legs and the limits on all of them. It has no legs if more moves may
+    /// follow.
     struct KnownPass {
         std::vector<PassLeg> legs;
         MotionLimits limits;
         double end_s = 0;
     };
     KnownPass pass_at(double s) const;
-    /// All moves of the pass that begins at `s` are known.
+    /// True if all moves of the pass that begins at `s` are known.
     bool isPassKnown(double s) const noexcept;
 
     bool hasOpenEnd() const noexcept { return is_open_; }
-    /// Place of the end of the last move.
+    /// s at the end of the last move.
     double programmed_s() const noexcept { return programmed_s_; }
-    /// Place of the end of the spans that are known.
+    /// s at the end of the known spans.
     double known_s() const noexcept { return spans_.empty() ? 0.0 : spans_.back().end_s(); }
-    /// The first place behind `s` at which the motion stops with any moves that follow; 1e300: none.
+    /// The first s after `s` where the motion stops whatever moves follow; 1e300: none.
     double stop_behind(double s) const noexcept;
-    /// The move at `s`; where two meet, the second one.
+    /// The move at `s`. At the end of a move it is the next one.
     Sequence move_at(double s) const noexcept { return feeds_.move_at(s); }
     Sequence first_move() const noexcept { return feeds_.first_move(); }
     Sequence span_at(double s) const noexcept;
-    /// The end of a span at `s` up to rounding; otherwise `s`.
+    /// Returns the end of a span that equals `s` up to rounding, otherwise `s`.
     double on_span_end(double s) const noexcept;
     Sequence last_span() const noexcept { return first_span_ + spans_.size() - 1; }
 
     const std::vector<curve::Span> &spans() const noexcept { return spans_; }
     const std::vector<profile::SpeedCap> &caps() const noexcept { return caps_; }
-    /// Those of the moves from first_move() on.
+    /// Feeds of the moves from first_move() on.
     const std::vector<profile::FeedLimit> &feeds() const noexcept { return feeds_.limits(); }
     const MoveFeeds &move_feeds() const noexcept { return feeds_; }
     MoveFeeds &move_feeds() noexcept { return feeds_; }
     bool isMadeFor(const Conditions &conditions) const noexcept;
     const profile::CurveLimits &limits() const noexcept { return limits_; }
-    /// Null: the joints are axes.
+    /// Inverse kinematics; null: the joints are axes.
     const JointMap *joint_map() const noexcept { return map_; }
     const JointLimits &joint_limits() const noexcept { return joints_; }
 
@@ -102,14 +102,14 @@ class CurvePath {
     Pose end_;
     double programmed_s_ = 0;
     bool is_open_ = false;        ///< the last part of the path may still grow
-    bool is_part_seamed_ = true;  ///< the seam between this part and the one before is known
+    bool is_part_seamed_ = true;  ///< the seam before this part is known
     Rule rule_ = Rule::EXACT;
     curve::CurveBuilder fitted_;
     curve::ExactBuilder exact_;
     PassBuilder passes_;
     Sequence first_span_ = 1;
-    std::vector<curve::Span> spans_;   ///< that the executor may read
-    std::vector<curve::Span> coming_;  ///< that have no room there yet
+    std::vector<curve::Span> spans_;   ///< spans in the store
+    std::vector<curve::Span> coming_;  ///< spans for which the store has no space yet
     curve::Span newest_;
     std::vector<curve::Seam> seams_;
     std::vector<profile::SpeedCap> caps_;

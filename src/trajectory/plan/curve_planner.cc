@@ -10,12 +10,12 @@ namespace mw::trajectory::plan {
 
 namespace {
 
-/// After so many cycles a plan that begins at rest was taken, or never will be.
+/// After this number of cycles, a plan that begins at standstill is either accepted or ignored for good.
 constexpr std::uint64_t TAKEN_CYCLES = 20;
-/// Cells of a plan and of its stops at most: half of the ring, as the plan before stays until this one is
-/// taken.
+/// Maximum number of cells of a plan with its stops. It is half of the ring, because the previous plan
+/// remains until this one is accepted.
 constexpr std::size_t MOST_CELLS = CELL_CAPACITY / 2;
-/// Those of its motion, of the last stop and of direct stops.
+/// Maximum numbers of cells of the motion, of its last stop and of all direct stops.
 constexpr std::size_t MOST_MOTION_CELLS = MOST_CELLS / 4, MOST_LAST_CELLS = MOST_CELLS / 4;
 constexpr std::size_t DIRECT_CELLS = profile::DirectStop::PHASES * CurvePlan::MOST_STOPS;
 static_assert(MOST_MOTION_CELLS + MOST_LAST_CELLS + DIRECT_CELLS < MOST_CELLS);
@@ -80,15 +80,15 @@ Sequence CurvePlanner::standing_before(const Snapshot &now) const noexcept {
     return is_there ? move : 0;
 }
 
-/// At the end of the path, of the last move.
+/// True if the move has a speed. After the end of the path the last move is evaluated.
 bool CurvePlanner::hasSpeed(Sequence move) const noexcept {
     const auto index = static_cast<std::size_t>(std::min(move, moves_.last_move()) - path_.first_move());
     const profile::FeedLimit &feed = path_.feeds()[index];
     return feed.velocity > 0 && feed.limit_share > 0;
 }
 
-/// What may be driven from `s` on. A move without speed stops the motion at `least_end` at the soonest. A
-/// single block whose end is before that is passed.
+/// The run that can be executed from `s` on. A move without speed stops the motion, but not before
+/// `least_end`. A single block that ends before `least_end` does not stop it.
 profile::Run CurvePlanner::run_from(double s, double least_end, const Conditions &conditions) const {
     double stop = path_.stop_behind(s);
     if (!path_.hasOpenEnd()) {
@@ -118,7 +118,7 @@ profile::Run CurvePlanner::run_from(double s, double least_end, const Conditions
     return run;
 }
 
-/// Finds out where the executor is: at rest, in a cell of the motion, or in a stop.
+/// Updates whether the executor is stopped, in a cell of the motion, or in a stop.
 void CurvePlanner::follow(const Snapshot &now) {
     if (now.motion != Motion::CURVE) {
         const bool is_taken = now.plan == plan_ || now.cycle > planned_cycle_ + TAKEN_CYCLES;
@@ -134,7 +134,7 @@ void CurvePlanner::follow(const Snapshot &now) {
     }
 }
 
-/// Drops the cells that the executor has left, and the path before.
+/// Drops the cells that the executor has completed, and the path before them.
 void CurvePlanner::drop_driven(const Snapshot &now) {
     if (now.motion != Motion::CURVE || is_abandoned_) {
         return;
@@ -198,7 +198,7 @@ void CurvePlanner::start(const Snapshot &now, const Conditions &conditions) {
     is_running_ = is_made;
 }
 
-/// The executor drives a pass by itself.
+/// Starts a pass. The executor controls its motion.
 void CurvePlanner::start_pass(const Snapshot &now, double s, Sequence move, const Conditions &conditions) {
     if (!isPassKnown(now)) {
         return;
@@ -244,7 +244,7 @@ void CurvePlanner::start_pass(const Snapshot &now, double s, Sequence move, cons
     numbers_.clear();
 }
 
-/// The first cell that another plan may change.
+/// Index of the first cell that a new plan may change.
 std::size_t CurvePlanner::first_free_cell(const Snapshot &now) const noexcept {
     double left = -now.time_in_cell;
     std::size_t k = 0;
@@ -264,7 +264,7 @@ void CurvePlanner::continue_plan(const Snapshot &now, const Conditions &conditio
     drop_driven(now);
     const std::size_t fixed = first_free_cell(now);
     if (fixed >= numbers_.size()) {
-        return;  // too late: the plan ends in its last stop
+        return;  // too late: the executor takes the last stop of the plan
     }
     path_.extend(conditions);
     const double from = timing_->cell(fixed).c[0];
@@ -290,7 +290,7 @@ void CurvePlanner::continue_plan(const Snapshot &now, const Conditions &conditio
     const bool is_taken_away = timing_->isComplete() && was_stop && !is_same;
     const bool must_slow = is_lower_ || is_nearer || is_taken_away;
     if (!(must_slow ? timing_->replan(run, fixed) : timing_->plan(run, fixed))) {
-        return;  // the plan before stays, with its stops
+        return;  // the previous plan remains active, with its stops
     }
     run_ = run;
     is_changed_ = is_lower_ = false;
@@ -305,8 +305,8 @@ Sequence CurvePlanner::write(const profile::TimeCell &cell) noexcept {
     return next_cell_++;
 }
 
-/// Commits the profile behind its first `fixed` cells. False if it has no stop, or more cells than the ring
-/// may hold.
+/// Commits the profile after its first `fixed` cells. False if it has no stop, or more cells than the ring
+/// has space for.
 bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     CurvePlan plan;
     const std::size_t cells = timing_->cells();
@@ -359,7 +359,7 @@ bool CurvePlanner::commit(const Snapshot &now, std::size_t fixed) {
     return true;
 }
 
-/// From the start of a cell on, of at most so many cells, or a direct stop.
+/// A stop from the start of cell `cell`, with at most `most_cells` cells, or else a direct stop.
 profile::Stop CurvePlanner::stop_from(std::size_t cell, std::size_t most_cells) {
     using profile::StopEffort;
     profile::Stop stop =
@@ -378,8 +378,8 @@ void CurvePlanner::add_stop(CurvePlan &plan, const profile::Stop &stop) noexcept
     plan.stops[plan.stop_count++] = {numbers_[stop.kept - 1], begin, next_cell_};
 }
 
-/// Stops behind cells of the plan before `end`, a small part of the time of a stop apart,
-/// from the last one to the first. In all they have `room` cells, and those of direct stops.
+/// Adds stops at ends of cells before `end`, from the last one to the first. Their distance is a small part
+/// of the time of a stop. `room`: number of cells for all of them, in addition to those of direct stops.
 void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, const profile::Stop &end, std::size_t room) {
     stops_.assign(1, end);
     double ahead = 0;
@@ -395,7 +395,8 @@ void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, const profile::
             continue;
         }
         since = 0;
-        // Behind the first stop after the time of the next plan it is for a planner that is late.
+        // After the first stop that follows the next planning time, stops are only for a late planner, so
+        // direct stops suffice.
         const double late = ahead - (PLANNING_S + RENEWAL_S);
         profile::Stop stop = stop_from(k, late > apart ? 0 : room);
         if (late > apart && late < apart_of(stop)) {
@@ -415,7 +416,7 @@ void CurvePlanner::add_stops(CurvePlan &plan, std::size_t fixed, const profile::
     }
 }
 
-/// Time from the start of the stop before to that of this one.
+/// Time between the starts of the previous stop and of this one [s].
 double CurvePlanner::apart_of(const profile::Stop &stop) const noexcept {
     double duration = 0;
     for (const profile::TimeCell &cell : stop.cells) {

@@ -10,55 +10,58 @@
 
 namespace mw::trajectory::plan {
 
-/// Planner thread.
+/// Use it in the planner thread only.
 ///
-/// A plan continues the motion behind a cell that the executor has not reached yet. The cells before stay. It
-/// reaches RENEWAL_S + RESERVE_S ahead; the next one is made after RENEWAL_S. A plan that comes too late is
-/// not taken: the executor takes the last stop of the plan before, and the next plan begins at rest.
+/// A plan continues the motion at the end of a cell that the executor has not reached. The cells before
+/// remain. A plan reaches RENEWAL_S + RESERVE_S ahead, and the next plan is made after RENEWAL_S. If a plan
+/// is too late, the executor ignores it and takes the last stop of the previous plan. The next plan then
+/// begins at standstill.
 class CurvePlanner {
   public:
     /// `is_estimate`: plans have only their last stop.
     CurvePlanner(PathStore &store, PlannedPath &moves, double period_s, bool is_estimate = false);
 
-    /// A path begins at `start`, where the executor is at rest.
+    /// Begins a path at `start`, where the executor is stopped.
     void begin(const Pose &start, const Snapshot &now, const Conditions &conditions);
-    /// The present path was made for the present limits and joints.
+    /// True if the current path was planned for the current limits and joints.
     bool suits(const Conditions &conditions) const noexcept {
         return path_.isEmpty() || path_.isMadeFor(conditions);
     }
-    /// Appends a move that starts at the end of the path. The limits are those at the first move.
+    /// Appends a move that starts at the end of the path. The limits of the first move apply to the whole
+    /// path.
     Sequence add(const Conditions &conditions, const Primitive &primitive, const MoveRequest &request);
     CurvePath &path() noexcept { return path_; }
     const CurvePath &path() const noexcept { return path_; }
-    /// Overrides have changed.
+    /// Call it when overrides have changed.
     void set_scales(const Conditions &conditions);
-    /// Nothing follows for now.
+    /// No move follows now: the curve ends at the end of the last move.
     void release_end(const Conditions &conditions);
-    /// Gates or single blocks have changed.
+    /// Call it when gates or single blocks have changed.
     void renew() noexcept { is_changed_ = true; }
-    /// The next start is so much later than possible.
+    /// Delays the next start by `delay_s` after the earliest possible time [s].
     void delay_start(double delay_s) noexcept { delay_s_ = delay_s; }
-    /// Commits what the executor needs next.
+    /// Commits the next part of the motion.
     void update(const Snapshot &now, const Conditions &conditions);
 
-    /// All of the pass that the executor would begin with is known, or no more of it can be.
+    /// True if the pass that the executor would begin is known completely, or no more of it can follow.
     bool isPassKnown(const Snapshot &now) const noexcept {
         return path_.isPassKnown(place_of(now)) || !path_.hasRoom();
     }
-    /// The plan covers all of the curve that is known, and there is more of it that could be released.
+    /// True if the plan covers the whole known curve, and release_end() would extend it.
     bool isStarving() const noexcept { return path_.hasOpenEnd() && (!is_running_ || !is_window_full_); }
-    /// The move that the executor is in, or before which it is at rest.
+    /// The move that the executor executes, or before which it is stopped.
     Sequence move_of(const Snapshot &now) const noexcept { return path_.move_at(place_of(now)); }
-    /// It is at rest exactly at the start of this move; 0: it is not.
+    /// The move at whose start the executor is stopped; 0: none.
     Sequence standing_before(const Snapshot &now) const noexcept;
-    /// Plans without success at rest, one after the other.
+    /// Number of consecutive failed plans at standstill.
     int failures() const noexcept { return failures_; }
 
-    static constexpr double RENEWAL_S = 0.2;   ///< from one plan to the next
-    static constexpr double RESERVE_S = 0.15;  ///< by which a plan may be late
+    static constexpr double RENEWAL_S = 0.2;   ///< time from one plan to the next [s]
+    static constexpr double RESERVE_S = 0.15;  ///< time by which a plan may be late [s]
     static constexpr double COMMITTED_S = RENEWAL_S + RESERVE_S;
-    static constexpr double WINDOW_S = 0.45;    ///< planned at once with jerk limits, and the time of a stop
-    static constexpr double PLANNING_S = 0.01;  ///< from the making of a plan to its first cell
+    static constexpr double WINDOW_S =
+        0.45;  ///< length of a window with jerk limits, without the time of a stop [s]
+    static constexpr double PLANNING_S = 0.01;  ///< time from a snapshot to the first cell of its plan [s]
 
   private:
     double place_of(const Snapshot &now) const noexcept;
@@ -82,17 +85,17 @@ class CurvePlanner {
     double period_s_;
     bool is_estimate_;
     CurvePath path_;
-    Scales scales_;                              ///< that the feeds of the path were made for
-    profile::Profile third_order_;               ///< with jerk limits
-    profile::AccelerationProfile second_order_;  ///< without
-    profile::PathTiming *timing_;                ///< that of the present path
+    Scales scales_;                 ///< overrides for which the feeds of the path were calculated
+    profile::Profile third_order_;  ///< profile with jerk limits
+    profile::AccelerationProfile second_order_;  ///< profile without jerk limits
+    profile::PathTiming *timing_;                ///< profile of the current path
     profile::Run run_;
-    std::vector<profile::Stop> stops_;  ///< of the plan that is being committed
-    std::vector<Sequence> numbers_;     ///< of the cells of the profile that are committed
+    std::vector<profile::Stop> stops_;  ///< stops of the plan that is being committed
+    std::vector<Sequence> numbers_;     ///< numbers of the committed cells of the profile
     Sequence next_cell_ = 1, next_leg_ = 1;
     std::uint64_t plan_ = 0, first_plan_ = 0;
     std::uint64_t planned_cycle_ = 0, tried_cycle_ = 0;
-    double committed_s_ = 0;  ///< from then to the last stop, about
+    double committed_s_ = 0;  ///< approximate time from the plan to its last stop [s]
     std::uint64_t drops_ = 0;
     bool is_running_ = false;    ///< a plan was committed and has not ended
     bool is_abandoned_ = false;  ///< the executor is in a stop

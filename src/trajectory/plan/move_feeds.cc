@@ -68,7 +68,7 @@ profile::FeedLimit MoveFeeds::feed_of(const Conditions &conditions, Sequence n) 
     return feed;
 }
 
-/// The speed along the feed length that the planner module chooses, of those up to `velocity`.
+/// The speed along the feed length that the planner module chooses, at most `velocity`.
 double MoveFeeds::chosen_feed(const Conditions &conditions, Sequence n, double velocity) noexcept {
     PlannedMove &m = moves_.move(n);
     const double ratio = m.request.tag.feed_ratio;
@@ -84,7 +84,7 @@ double MoveFeeds::chosen_feed(const Conditions &conditions, Sequence n, double v
 }
 
 MoveFeeds::Change MoveFeeds::update(const Conditions &conditions) {
-    // What rounding may make of a speed that a spindle gives.
+    // Relative rounding error of a speed that follows a spindle.
     constexpr double ROUNDING = 1e-9;
     Change change;
     const auto compare = [&](double now, double before) {

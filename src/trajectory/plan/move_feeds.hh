@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Limits of speed of the moves on a curve: by feed, overrides, spindles and planner modules.
+// Speed limits of the moves on a curve, from feeds, overrides, spindles and planner modules.
 #pragma once
 
 #include <vector>
@@ -11,28 +11,29 @@
 
 namespace mw::trajectory::plan {
 
-/// Planner thread. Of moves in succession, those that are not dropped.
+/// Use it in the planner thread only. It contains the consecutive moves that are not dropped.
 class MoveFeeds {
   public:
     explicit MoveFeeds(PlannedPath &moves) : moves_(moves) {}
 
     void begin(Sequence first_move);
-    /// The newest move; its tag is complete.
+    /// Adds the newest move. Its tag must be complete.
     void add(const Conditions &conditions, Sequence move);
     void drop_before(Sequence move);
     struct Change {
         bool is_any = false, is_lower = false;
     };
-    /// For other overrides: whether a limit changed, and became lower.
+    /// Updates the limits for changed overrides. Returns whether a limit changed, and whether one became
+    /// lower.
     Change update(const Conditions &conditions);
 
     const std::vector<profile::FeedLimit> &limits() const noexcept { return feeds_; }
     Sequence first_move() const noexcept { return first_move_; }
-    /// The move at `s`; where two meet, the second one.
+    /// The move at `s`. At the end of a move it is the next one.
     Sequence move_at(double s) const noexcept;
-    /// A move follows the speed of a spindle.
+    /// True if a move follows the speed of a spindle.
     bool isSynched() const noexcept { return last_synched_ >= first_move_; }
-    /// The limit that a planner module exceeded. The move has no speed.
+    /// The limit that a planner module exceeded. The move then has no speed.
     const Overreach &overreach() const noexcept { return overreach_; }
 
   private:

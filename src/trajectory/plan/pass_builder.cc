@@ -8,27 +8,28 @@ namespace mw::trajectory::plan {
 
 namespace {
 
-/// Of each limit: what is left for rounding.
+/// Factor of all limits. The rest is a margin for rounding.
 constexpr double FULL = 0.9999;
-/// The spindle may turn this much faster than now without a corner being too tight for its speed.
+/// Corners are made for the current spindle speed times this factor.
 constexpr double SPEED_RESERVE = 1.1;
-/// In a corner: parts of the acceleration and of the jerk for the change of direction, and of the jerk for
-/// the change of direction while the speed changes. The rest is for the speed.
+/// Parts of the acceleration and of the jerk for the change of direction in a corner, and part of the jerk
+/// for the change of direction while the speed changes. The rest is for changes of the speed.
 constexpr double TURNING_A = 0.5, TURNING_J = 0.3, CROSS_J = 0.4;
-/// Part of the second line that the corner may move into: a shoulder may be at its end.
+/// Fraction of the second line into which the corner may be shifted. The end of this line may be at a
+/// shoulder.
 constexpr double ROOM_SHARE = 0.95;
-/// Changes of the tangent below this are none; lines whose tangents have a cosine below this reverse.
+/// A smaller change of the tangent is no corner. Lines whose tangents have a smaller cosine reverse.
 constexpr double SAME_DIRECTION = 1e-9, REVERSAL_COSINE = -0.999;
 constexpr double SMALLEST_CORNER = 1e-6;
 
-/// The largest derivatives of one limited coordinate on a leg, and its limits.
+/// Maximum derivatives of one limited coordinate on a leg, and its limits.
 struct Row {
     double q1 = 0, q2 = 0, q3 = 0;
     MotionLimits limits;
 };
 using Rows = std::array<Row, geometry::AXIS_COUNT + 1>;
 
-/// Of derivatives that are given by coordinate; the last row is the norm of X Y Z.
+/// Rows from derivatives per coordinate. The last row is the norm of X Y Z.
 template <class Derivatives>
 Rows rows_of(const Limits &limits, Derivatives derivatives) noexcept {
     Rows rows;
@@ -51,7 +52,7 @@ Rows rows_of(const Primitive &p, const Limits &limits) noexcept {
     return rows_of(limits, [&](std::size_t i) { return Row{q1[i], q2[i], q2[i] * turning, {}}; });
 }
 
-/// A corner whose tangent goes from one to the other over 2 d as 3 u^2 - 2 u^3.
+/// Rows of a corner whose tangent changes over the length 2 d as 3 u^2 - 2 u^3.
 Rows corner_rows(const Pose &from, const Pose &to, double d, const Limits &limits) noexcept {
     const double length = 2 * d;
     return rows_of(limits, [&](std::size_t i) {
@@ -63,7 +64,7 @@ Rows corner_rows(const Pose &from, const Pose &to, double d, const Limits &limit
     });
 }
 
-/// The speed at which turning takes its part of acceleration and jerk.
+/// The speed at which the change of direction uses its part of acceleration and jerk.
 double most_speed(const Rows &rows) noexcept {
     double v = UNLIMITED;
     for (const Row &row : rows) {
@@ -74,7 +75,7 @@ double most_speed(const Rows &rows) noexcept {
     return v;
 }
 
-/// What is left along the curve up to the speed v.
+/// Remaining acceleration and jerk along the curve up to the speed v.
 MotionLimits left_at(const Rows &rows, double v) noexcept {
     MotionLimits left{v, UNLIMITED, UNLIMITED};
     for (const Row &row : rows) {
@@ -99,10 +100,10 @@ MotionLimits limits_of(const Rows &rows) noexcept {
     return left_at(rows, most_speed(rows));
 }
 
-/// Half the length of a corner that can be passed at the speed v.
+/// Half of the length of a corner that can be passed at the speed v.
 double half_for_speed(const Pose &from, const Pose &to, const Limits &limits, double v) noexcept {
     double d = 0;
-    for (const Row &row : corner_rows(from, to, 1.0, limits)) {  // q2 goes with 1/d, q3 with 1/d^2
+    for (const Row &row : corner_rows(from, to, 1.0, limits)) {  // q2 is proportional to 1/d, q3 to 1/d^2
         d = std::max(d, row.q2 * v * v / (TURNING_A * row.limits.acceleration));
         d = std::max(d, std::sqrt(row.q3 * v * v * v / (TURNING_J * row.limits.jerk)));
     }
@@ -183,7 +184,7 @@ void PassBuilder::add_leg(const LimitedLeg &leg) {
     s_ = leg.leg.start_s + leg.leg.length;
 }
 
-/// The part of the open move up to `length` of it.
+/// Adds the open move up to `length` as a leg.
 void PassBuilder::close(double length, const Limits &limits) {
     Primitive part = open_.primitive;
     if (!part.isArc && (driven_ > 0 || length != part.length)) {
@@ -208,7 +209,7 @@ void PassBuilder::close(double length, const Limits &limits) {
     add_leg({leg, left.acceleration, left.jerk});
 }
 
-// With the tangent t(u) = a + (b - a)(3 u^2 - 2 u^3), u from 0 to 1 over the length h, the place is
+// With the tangent t(u) = a + (b - a)(3 u^2 - 2 u^3), u from 0 to 1 over the length h, the position is
 // h (a u + (b - a)(u^3 - u^4/2)).
 void PassBuilder::add_corner(const Corner &corner, const Primitive &next, double per_unit,
                              const Limits &limits) {
@@ -253,7 +254,7 @@ void PassBuilder::move_parts(std::vector<curve::Span> &spans, std::vector<Limite
 double pass_load(const PlannedPath &path, const Conditions &conditions, Sequence move) noexcept {
     double load = 0;
     double length = 0;
-    double ramps = 0;  // ways that gaining and losing the speed take
+    double ramps = 0;  // distance for acceleration and deceleration
     for (Sequence n = move; n <= path.last_move(); ++n) {
         const MoveRequest &r = path.move(n).request;
         if (!conditions.isLocked(r) || (n > move && r.isGated)) {
@@ -268,7 +269,8 @@ double pass_load(const PlannedPath &path, const Conditions &conditions, Sequence
         const double gain = speed_change({}, v, limits.acceleration, limits.jerk).distance;
         ramps = std::max(ramps, 2 * gain);
     }
-    // If no part of it would have the lead, the maximum speed that leaves one goes about with the root.
+    // If no part of the pass would have the full speed, the maximum possible speed is about proportional to
+    // the square root of the length.
     return load <= 1.0 && ramps > length ? std::sqrt(ramps / length) : load;
 }
 

@@ -13,25 +13,25 @@ namespace mw::trajectory::plan {
 
 namespace {
 
-/// A load that is over what is possible by rounding alone.
+/// Excess of a load that rounding alone can cause.
 constexpr double LOAD_ROUNDING = 1e-9;
-/// A line on which the joints have no speed.
+/// Minimum speed in the divisor of the load: the joints cannot move along the line.
 constexpr double NO_SPEED = 1e-9;
 
 double jerk_time(const MotionLimits &limits) noexcept {
     return limits.jerk < UNLIMITED ? limits.acceleration / limits.jerk : 0.0;
 }
 
-/// Deviation of the tool from the helix [revolutions] while a spindle of this ramp reverses. Following it
-/// takes the part `use` of the tool's acceleration, which is built up over the time `use` of jerk_time: the
-/// tool loses by that, and makes it good with the rest of the acceleration.
+/// Deviation of the tool from the helix [rev] while a spindle with this ramp reverses. `use` is the part of
+/// the tool's acceleration that follows the spindle. The acceleration builds up over the time use *
+/// jerk_time. The tool falls behind meanwhile, and catches up with the rest of the acceleration.
 double off_helix(double ramp, double use, const MotionLimits &limits, double late_s2) noexcept {
     const double built_s = use * jerk_time(limits);
     const double caught_up = use < 1 ? use / (1 - use) : UNLIMITED;
     return ramp * (late_s2 + built_s * built_s / 6 + 0.125 * built_s * built_s * caught_up);
 }
 
-/// By this time, squared and halved, a change of the spindle's acceleration is followed late [s^2].
+/// Delay with which the tool follows a change of the spindle's acceleration, squared and halved [s^2].
 double late_s2(const TapRequest &tap, double per_turn, const MotionLimits &limits) noexcept {
     const double dt = tap.conditions.limits.period_s();
     const double rate =
@@ -39,8 +39,8 @@ double late_s2(const TapRequest &tap, double per_turn, const MotionLimits &limit
     return TapTuning::LATE / (rate * rate) + TapTuning::LATE_CYCLES * dt * dt;
 }
 
-/// The spindle reaches its speed in the retract, and keeps it until the tool follows it well again, before it
-/// is commanded forward.
+/// True if the retract is long enough: the spindle reaches its speed and keeps it until the tool follows it
+/// well again, before it is commanded forward.
 bool isBackLong(const TapTerms &tap, const SpindleBrakings &brakings, double rps,
                 double settling_s) noexcept {
     const double back = tap.back_scale * std::abs(rps);
@@ -49,7 +49,7 @@ bool isBackLong(const TapTerms &tap, const SpindleBrakings &brakings, double rps
     return turns * tap.per_turn <= tap.depth + TapTuning::CLEARANCE * tap.per_turn;
 }
 
-/// The line of a tap, and the travel of the tool on it.
+/// The line of a tap, and the range of the tool on it.
 TapTerms line_of(const TapRequest &tap) noexcept {
     const MoveRequest &r = tap.request;
     TapTerms out;
@@ -70,10 +70,10 @@ TapTerms line_of(const TapRequest &tap) noexcept {
     return out;
 }
 
-/// What the tool may do along the line.
+/// Limits of the tool along the line.
 struct Ability {
-    double most_speed = 0;  ///< ever
-    MotionLimits limits;    ///< at the speed up to which it has this acceleration
+    double most_speed = 0;  ///< maximum speed at any acceleration
+    MotionLimits limits;    ///< limits at the maximum speed for this acceleration
 };
 
 double needed_speed(const TapRequest &tap) noexcept {
@@ -81,8 +81,8 @@ double needed_speed(const TapRequest &tap) noexcept {
     return r.feed_per_revolution * r.tag.feed_ratio * std::abs(tap.rps()) * std::max(1.0, r.tap_scale);
 }
 
-/// The joints' curves leave the less acceleration the faster the tool may go: it may go faster than it will
-/// have to as long as that costs little.
+/// At higher speed, the curvature of the joint paths leaves less acceleration. The speed limit is raised
+/// above the needed speed as long as the loss of acceleration is small.
 Ability ability_of_joints(const TapRequest &tap, const TapTerms &terms) noexcept {
     const Workspace &workspace = tap.conditions.workspace;
     const MotionLimits axes = limits_along(tap.line, tap.conditions.limits.wanted());
@@ -150,7 +150,7 @@ TapVerdict check_tap(const TapRequest &tap) noexcept {
     const double built_s = jerk_time(limits);
     if (built_s > 0) {
         const bool one_by_one = isBackLong(terms, brakings, tap.rps(), TapTuning::SETTLING * built_s);
-        // A spindle that slows down while it accelerates changes its acceleration by both.
+        // If the spindle slows down while it accelerates, its acceleration changes by the sum of both ramps.
         const double change = (one_by_one ? 1.0 : 2.0) * fastest;
         const double use = SpindlePursuit::MEETING_SHARE * abruptness;
         const double off = off_helix(change, use, limits, late_s2(tap, terms.per_turn, limits));
@@ -163,7 +163,7 @@ TapVerdict check_tap(const TapRequest &tap) noexcept {
     if (run_in + overrun > terms.depth) {
         return {TapObstacle::TOO_SHALLOW, (run_in + overrun) / terms.depth};
     }
-    // If acceleration and deceleration took all of the depth, no part of the thread would have its lead.
+    // If acceleration and deceleration took the whole depth, no part of the thread would have its pitch.
     return {};
 }
 

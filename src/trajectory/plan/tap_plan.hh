@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Rigid taps before they begin: whether the machine can follow the spindle through its reversals, and with
-// what. Formulas: docs/integrator/spindles.md.
+// Checks a rigid tap before it begins: whether the machine can follow the spindle through its reversals, and
+// calculates its limits. Formulas: docs/integrator/spindles.md.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace mw::trajectory {
 
-/// Why a tap cannot be made at the present speed of its spindle.
+/// Reason why a tap is not possible at the current spindle speed.
 enum class TapObstacle : std::uint8_t {
     NONE,
-    TOO_FAST,     ///< value: the speed that is needed over what the machine, or the operator, allows
-    TOO_ABRUPT,   ///< value: the acceleration with which the spindle turns back over what the machine allows
-    TOO_SUDDEN,   ///< value: deviation of the tool from the helix while the spindle reverses [revolutions]
-    TOO_SHALLOW,  ///< value: the depth that gaining speed and turning back take over what there is
+    TOO_FAST,     ///< value: needed speed divided by the maximum of the machine or the operator
+    TOO_ABRUPT,   ///< value: acceleration of the reversing spindle divided by the maximum of the tool
+    TOO_SUDDEN,   ///< value: deviation of the tool from the helix while the spindle reverses [rev]
+    TOO_SHALLOW,  ///< value: depth for acceleration and reversal divided by the depth of the tap
 };
 struct TapVerdict {
     TapObstacle obstacle = TapObstacle::NONE;
@@ -27,7 +27,7 @@ struct TapVerdict {
 
 namespace mw::trajectory::plan {
 
-/// The way in of a tap.
+/// The cut of a tap.
 struct TapRequest {
     const Primitive &line;
     const MoveRequest &request;
@@ -39,7 +39,7 @@ struct TapRequest {
     std::size_t spindle() const noexcept { return static_cast<std::size_t>(request.spindle); }
 };
 
-/// What the executor needs to know of a tap, with its spindle at its present speed.
+/// Data of a tap for the executor, at the current spindle speed.
 TapTerms tap_terms(const TapRequest &tap) noexcept;
 
 TapVerdict check_tap(const TapRequest &tap) noexcept;
