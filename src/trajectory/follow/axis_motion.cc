@@ -8,10 +8,11 @@ namespace mw::trajectory {
 
 namespace {
 
-/// Part of a cycle below which a motion has ended: two that brake together end in the same cycle.
+/// Fraction of a cycle below which a motion counts as complete. Two axes that brake together then stop in the
+/// same cycle.
 constexpr double TIME_ROUNDING = 1e-9;
 
-/// Moves with constant acceleration for at most `span`; returns the time left of dt.
+/// Moves with constant acceleration for at most `span` [s]. Returns the rest of `dt` [s].
 double go(double &p, double &v, double a, double span, double dt) noexcept {
     const double t = std::clamp(span, 0.0, dt);
     p += t * (v + 0.5 * a * t);
@@ -19,23 +20,23 @@ double go(double &p, double &v, double a, double span, double dt) noexcept {
     return dt - t;
 }
 
-/// The acceleration that brakes to the target where `a` would pass it by rounding: at a soft limit that is
-/// beyond the limit.
+/// Acceleration that stops exactly at the target if, because of rounding, `a` would pass it. Past the target
+/// may be past a soft limit.
 double fitted(double a, double way, double velocity) noexcept {
     constexpr double ROUNDING = 1e-9;
     const double needed = way * velocity > 0 ? 0.5 * velocity * velocity / std::abs(way) : 0.0;
     return needed > a && needed <= a * (1.0 + ROUNDING) ? needed : a;
 }
 
-/// Distance of the change from a speed without acceleration to standstill.
+/// Distance of a stop from a speed, with acceleration 0 at the start.
 double braking_distance(double v, double acceleration, double jerk) noexcept {
     const double time = v * jerk > acceleration * acceleration ? v / acceleration + acceleration / jerk
                                                                : 2 * std::sqrt(v / jerk);
     return 0.5 * v * time;
 }
 
-/// The fastest motion over a distance that ends at standstill: to a speed, at that speed, to standstill. The
-/// direction of the motion is the positive one.
+/// The fastest motion over a distance to standstill: a change of speed, a cruise, a stop. Its direction is
+/// positive.
 struct WayPlan {
     SpeedChange to_speed;
     double speed = 0, cruise_s = 0;
@@ -50,13 +51,14 @@ WayPlan plan_way(const MotionState &from, double way, const MotionLimits &limits
     double speed = limits.velocity;
     double left = way - distance(speed);
     if (left < 0) {
-        // Above the speed that it would settle at, the distance increases with the speed. Below, it brakes
-        // less than it could.
+        // Above the speed at which the acceleration reaches 0, the distance increases with the speed. Below
+        // that speed, the motion brakes less than it could.
         const double settled = std::clamp(settled_speed(from, limits.jerk), 0.0, limits.velocity);
         const bool isAbove = distance(settled) <= way;
         const double low = isAbove ? settled : 0.0;
         const double span = (isAbove ? limits.velocity : settled) - low;
-        // By the cube root, since a short way needs a speed that is small to the last digit.
+        // The search uses the cube root, because a short distance needs a low speed that is exact to the last
+        // digit.
         const auto at = [&](double root) { return low + span * root * root * root; };
         speed = at(highest_allowed(0.0, 1.0, [&](double root) { return distance(at(root)) <= way; }));
         left = std::max(0.0, way - distance(speed));
@@ -69,7 +71,8 @@ WayPlan plan_way(const MotionState &from, double way, const MotionLimits &limits
     return out;
 }
 
-/// When the velocity is 0 in this part, at whose ends it has different signs: j t^2 / 2 + a t + v = 0.
+/// Time at which the velocity is 0 in a part that begins and ends with opposite signs: j t^2 / 2 + a t + v =
+/// 0.
 double time_to_turn(const MotionState &from, const SpeedChange::Part &part) noexcept {
     const double root = std::sqrt(std::max(0.0, from.a * from.a - 2 * part.jerk * from.v));
     for (const double side : {1.0, -1.0}) {
@@ -124,7 +127,7 @@ void AxisMotion::add_stop(double &low, double &high) const noexcept {
     };
     add(position);
     add(position + stop.distance);
-    // With an acceleration against its velocity it may turn before that.
+    // If the acceleration opposes the velocity, the motion may reverse before it stops.
     MotionState state{position, velocity, acceleration};
     for (const SpeedChange::Part &part : stop.parts) {
         const MotionState next = state.after(part.jerk, part.duration);
@@ -142,7 +145,8 @@ void AxisMotion::end_at(double place) noexcept {
 
 void AxisMotion::stop() noexcept {
     const double place = rest();
-    // A motion that already brakes to its target reaches it, whatever rounding makes of the distance.
+    // A motion that already brakes to its target reaches the target, whatever the rounding error of the
+    // distance.
     constexpr double CYCLES = 1e-3;
     const bool isBehind = std::abs(place - target) <= CYCLES * std::abs(place - position) &&
                           std::abs(place - position) > std::abs(target - position);
@@ -152,8 +156,8 @@ void AxisMotion::stop() noexcept {
     }
 }
 
-/// The target of a stop follows from the present limits. A fixed target would be passed if the acceleration
-/// fell, and a stop that is requested in every cycle would never begin to brake.
+/// The target of a stop follows from the current limits. A fixed target would be passed if the acceleration
+/// limit were lowered, and a stop that is requested in every cycle would never begin to brake.
 void AxisMotion::brake(double dt) noexcept {
     bool isOver = false;
     if (max_jerk > 0) {
@@ -194,8 +198,8 @@ void AxisMotion::step(double dt) noexcept {
         return;
     }
     max_jerk > 0 ? step_with_jerk(dt) : step_without_jerk(dt);
-    // If only rounding of the distance is left at standstill, the target is reached. With a velocity limit of
-    // 0 the motion would otherwise never end.
+    // At standstill, a distance within rounding counts as 0. Otherwise the motion would never end if the
+    // velocity limit is 0.
     constexpr double ROUNDING = 1e-7;
     const bool isStill = velocity == 0.0 && acceleration == 0.0;
     if (isStill && std::abs(target - position) <= ROUNDING * max_acceleration * dt * dt) {
@@ -229,7 +233,7 @@ void AxisMotion::step_with_jerk(double dt) noexcept {
 void AxisMotion::step_without_jerk(double dt) noexcept {
     acceleration = 0;
     const double a = fitted(max_acceleration, target - position, velocity);
-    // Mirrored so that the target is ahead of the position where braking now would end.
+    // The direction is chosen so that the target is ahead of the position where braking now would end.
     const double rest = position + velocity * std::abs(velocity) / (2.0 * a);
     const double sign = target >= rest ? 1.0 : -1.0;
     const double d = (target - position) * sign;

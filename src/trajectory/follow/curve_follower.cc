@@ -8,10 +8,10 @@ namespace mw::trajectory {
 
 namespace {
 
-/// Distance from the end of a move that is rounding, at a length of 1.
+/// Distance to the end of a move that counts as rounding error, relative to a length of 1.
 constexpr double ARRIVED = 4e-12;
 
-/// The place where the planner takes a move as driven.
+/// True if the planner would take the move as complete at `s`.
 bool isAtEnd(const MoveTag &move, double s) noexcept {
     return std::abs(s - move.end_s) <= curve::SAME_PLACE;
 }
@@ -26,7 +26,7 @@ void CurveFollower::take(const CurvePlan &plan) noexcept {
     }
 }
 
-/// False if the plan that waits was made for another state.
+/// Starts the waiting plan. False if it was made for another state.
 bool CurveFollower::start(const Snapshot &state) noexcept {
     const bool is_valid = waiting_.brakes == state.brakes && waiting_.after == state.plan &&
                           state.motion == Motion::REST && !state.isHeld && !state.isDropping;
@@ -75,7 +75,7 @@ void CurveFollower::clear() noexcept {
     time_ = v_ = 0;
 }
 
-/// The cell is over; false when the motion ends with it.
+/// Changes to the next cell, a new plan or a stop. False if the motion ends with this cell.
 bool CurveFollower::leave_cell() noexcept {
     const Sequence left = cell_;
     ++cell_;
@@ -89,7 +89,7 @@ bool CurveFollower::leave_cell() noexcept {
     const bool can_stop = next_stop_ < plan_.stop_count && plan_.stops[next_stop_].behind == left;
     const bool continues = waiting_.plan != 0 && waiting_.behind == left;
     if (waiting_.plan != 0 && waiting_.behind <= left && !continues) {
-        waiting_.plan = 0;  // it came too late
+        waiting_.plan = 0;  // the plan is too late
     }
     if (continues && !(must_stop_ && can_stop)) {
         plan_ = waiting_;
@@ -129,7 +129,7 @@ bool CurveFollower::advance(const PathStore &store, double dt) noexcept {
     return true;
 }
 
-/// The move at the present place.
+/// The move at the current position.
 Sequence CurveFollower::move(const PathStore &store) noexcept {
     while (move_ < plan_.last_move && s_ >= store.move(move_).end_s) {
         ++move_;

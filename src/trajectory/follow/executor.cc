@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-// [[likely]] marks what most cycles do: see motion/servo/controller.cc.
+// [[likely]] marks the branch of most cycles; see motion/servo/controller.cc.
 namespace mw::trajectory {
 
 namespace {
 
-/// A tap also moves past the ends of its line.
+/// Position on the line of a tap, which may be past its ends.
 Pose line_at(const Primitive &line, double x) noexcept {
     return x == 0 ? line.start : x == line.length ? line.end : line.start + line.lin * x;
 }
@@ -49,7 +49,7 @@ void Executor::set_position(const Pose &pose) noexcept {
     out_.position = pose;
 }
 
-/// What is commanded.
+/// Writes the commanded position and the other outputs.
 void Executor::command() noexcept {
     out_.position = position_;
     state_.done_move = std::max(state_.done_move, done_);
@@ -61,7 +61,7 @@ void Executor::come_to_rest() noexcept {
     state_.v = 0;
 }
 
-/// Discards the rest of the path. The planner sees it in `drops`.
+/// Drops the rest of the path. The planner sees this in `drops`.
 void Executor::finish_drop() noexcept {
     state_.isDropping = false;
     ++state_.drops;
@@ -105,7 +105,7 @@ void Executor::stop_now() noexcept {
     finish_drop();
 }
 
-/// Position, the move that it belongs to, and how many moves are complete.
+/// Updates the position, its move and the last completed move.
 void Executor::locate() noexcept {
     out_.velocity = std::abs(state_.v);
     const bool isMoving = state_.motion != Motion::REST;

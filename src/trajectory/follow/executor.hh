@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The servo side of path motion: evaluates what the planner has committed, and stops on the path by itself.
+// The servo side of path motion. It evaluates the committed plan and can stop on the path without the
+// planner.
 #pragma once
 
 #include <array>
@@ -13,25 +14,26 @@
 
 namespace mw::trajectory {
 
-/// What a tap wants of its spindle.
+/// Spindle command of a tap.
 struct TapDemand {
-    int spindle = -1;     ///< -1: no tap is under way
-    double factor = 1;    ///< of the speed that the spindle was started with; 0: off, and not on by itself
-    bool isLost = false;  ///< the tool could not keep to the spindle
+    int spindle = -1;   ///< number of the spindle; -1: no tap is active
+    double factor = 1;  ///< factor of the speed with which the spindle was started; 0: off, without a restart
+                        ///< by the executor
+    bool isLost = false;  ///< the tool could not follow the spindle
 };
 
-/// What the executor commands for the end of a cycle.
+/// Command of the executor for the end of a cycle.
 struct ExecutorOutput {
     Pose position;
-    double velocity = 0;  ///< along the parameter of the path [1/s]
-    Sequence move = 0;    ///< the move under way, 0: none
+    double velocity = 0;  ///< speed along the parameter of the path [1/s]
+    Sequence move = 0;    ///< current move; 0: none
     bool isMoving = false;
-    double distance_to_go = 0;  ///< to the end of the move under way
+    double distance_to_go = 0;  ///< distance to the end of the current move
     bool isOnProbe = false;
     TapDemand tap;
 };
 
-/// State of an executor. A copy of it continues in another executor whose store holds the same path.
+/// State of an executor. A copy of it can continue in another executor with a copy of the store.
 class ExecutorState {
   protected:
     explicit ExecutorState(double period_s) noexcept : period_(period_s) {}
@@ -45,26 +47,28 @@ class ExecutorState {
     std::array<FollowedSpindle, MAX_SPINDLES> spindles_{};
     PassFollower pass_;
     TapFollower tap_;
-    bool tapping_ = false;  ///< the tool is on the line of a tap, which it may leave at both ends
+    bool tapping_ = false;  ///< the tool is on the line of a tap, which it may exceed at both ends
     CurveFollower curve_;
 };
 
-/// All methods: servo thread only; bounded, no allocation.
+/// Call all methods in the servo thread only. They are bounded and do not allocate memory.
 ///
-/// Follows the cells of a plan. Every plan has its stops: `hold`, `drop` and a planner that is late or lost
-/// take the next one. The executor itself drives passes that are locked to a spindle's angle (Motion::LOCKED)
-/// from stop to stop: `hold` takes effect at their end, because a paused thread is scrap; `drop` brakes at
-/// once. In a tap `drop` switches the spindle off, and the tool follows it until it is stopped.
+/// The executor follows the cells of a plan. Every plan contains its stops: `hold`, `drop` and a late or lost
+/// planner take the next stop. The executor itself controls passes that are locked to a spindle angle
+/// (Motion::LOCKED), from stop to stop. In a pass, `hold` takes effect at its end, because a paused thread is
+/// scrap. `drop` brakes at once. In a tap, `drop` switches the spindle off, and the tool follows the spindle
+/// until it is stopped.
 class Executor : private ExecutorState {
   public:
     explicit Executor(PathStore &store, double period_s) noexcept : ExecutorState(period_s), store_(store) {}
-    /// Continues where `other` is; `store` holds the same path.
+    /// Continues from the state of `other`. `store` must hold the same path.
     Executor(const Executor &other, PathStore &store) noexcept : ExecutorState(other), store_(store) {}
 
-    /// The path begins at `pose`; only at rest and with nothing left of a path.
+    /// Begins a path at `pose`. Call it only at standstill, without a remaining path.
     [[gnu::cold]] void set_position(const Pose &pose) noexcept;
 
-    /// The angle [turns] of a spindle; call every cycle before `step`: it gives the speed.
+    /// Sets the angle of a spindle [rev]. Call it in every cycle before `step`; the speed is calculated from
+    /// it.
     void set_spindle(int spindle, double turns) noexcept {
         FollowedSpindle &followed = spindles_[static_cast<std::size_t>(spindle)];
         followed.track.take(turns, period_);
@@ -76,29 +80,29 @@ class Executor : private ExecutorState {
         spindles_[static_cast<std::size_t>(spindle)].brakings = brakings;
     }
 
-    /// Advances to the end of `cycle`.
+    /// Advances the motion to the end of `cycle`.
     [[gnu::hot]] const ExecutorOutput &step(std::uint64_t cycle) noexcept;
 
-    /// Held: brakes and takes no plans until released.
+    /// While held, the motion brakes, and no plan is accepted.
     void hold(bool isHeld) noexcept;
-    /// Brakes; when at rest everything that is left of the path is dropped.
+    /// Brakes. At standstill, the rest of the path is dropped.
     void drop() noexcept;
-    /// Stops dead where it is and drops the path (amplifiers are off, nothing can follow a profile).
+    /// Stops in this cycle and drops the path. For disabled amplifiers, which cannot follow a profile.
     [[gnu::cold]] void stop_now() noexcept;
 
-    /// The next event whose place has been passed, or nullptr; pop with `drop_event`.
+    /// The next event whose move is complete, or nullptr. Remove it with `drop_event`.
     const PathEvent *due_event() noexcept;
     void drop_event() noexcept { store_.events.drop(); }
 
     bool isAtRest() const noexcept { return state_.motion == Motion::REST; }
-    /// The spindle that what moves is in step with, -1: none.
+    /// The spindle to which the current motion is locked; -1: none.
     int locked_spindle() const noexcept {
         if (state_.motion == Motion::LOCKED) [[unlikely]] {
             return curve_.plan().pass.spindle;
         }
         return -1;
     }
-    /// Nothing is left of the path.
+    /// True if no path remains.
     bool isEmpty() const noexcept;
     const Snapshot &snapshot() const noexcept { return state_; }
     const ExecutorOutput &output() const noexcept { return out_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Passes that are locked to the angle of a spindle: threads and rigid taps.
+// Passes that are locked to a spindle angle: threads and rigid taps.
 #include <algorithm>
 
 #include "trajectory/follow/executor.hh"
@@ -19,7 +19,7 @@ void Executor::begin_pass() noexcept {
     step_locked();
 }
 
-/// True while the tool moves along the line of a tap, or waits.
+/// Advances a tap by one cycle. True while the tool moves along the line of the tap, or waits.
 bool Executor::advance_tap(const SpindleReading &spindle) noexcept {
     const Pass &pass = curve_.plan().pass;
     if (state_.isDropping) {
@@ -48,7 +48,7 @@ bool Executor::advance_pass(const SpindleReading &spindle) noexcept {
     return is_moving;
 }
 
-/// One cycle of a pass that is locked to the angle of a spindle.
+/// Advances a locked pass by one cycle.
 void Executor::step_locked() noexcept {
     const Pass &pass = curve_.plan().pass;
     const SpindleReading spindle = spindles_[static_cast<std::size_t>(pass.spindle)].reading();

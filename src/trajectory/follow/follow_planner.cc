@@ -9,7 +9,7 @@ namespace mw::trajectory {
 
 namespace {
 
-/// Rounding of a place.
+/// Rounding error of a position.
 constexpr double ROUNDING = 1e-10;
 
 void limit(AxisMotion &motion, const FollowLimits &limits) noexcept {
@@ -18,13 +18,14 @@ void limit(AxisMotion &motion, const FollowLimits &limits) noexcept {
     motion.max_jerk = limits.jerk;
 }
 
-/// The speed that a stop from here has once its acceleration has fallen to 0.
+/// Speed of the fastest stop when its acceleration has fallen to 0.
 double settled(const AxisMotion &motion) noexcept {
     return motion.max_jerk > 0 ? settled_speed({0, motion.velocity, motion.acceleration}, motion.max_jerk)
                                : motion.velocity;
 }
 
-/// The stop from here keeps the velocity and the range, or exceeds them no more than that from `before`.
+/// True if the stop from this state keeps the velocity limit and the range, or exceeds them by no more than
+/// the stop from `before`.
 bool hasStop(const AxisMotion &motion, const AxisMotion &before, const FollowLimits &limits) noexcept {
     if (std::abs(settled(motion)) > std::max(limits.velocity, std::abs(settled(before))) * (1.0 + 1e-9)) {
         return false;
@@ -61,7 +62,7 @@ void FollowPlanner::follow(double wanted, const FollowLimits &limits, double dt)
     const double place = std::clamp(wanted, std::min(limits.low, before), std::max(limits.high, before));
     const Wanted now = wanted_at(place, limits, dt);
     if (!take(now, limits, dt) && !pursue(now, limits, dt)) {
-        // From a stop within the range it moves to a place within the range.
+        // A motion that can stop within the range can also move to a position within the range.
         motion_.target = place;
         motion_.step(dt);
     }
@@ -70,10 +71,11 @@ void FollowPlanner::follow(double wanted, const FollowLimits &limits, double dt)
     record(before, dt);
 }
 
-/// What moves faster than the coordinate can has jumped. What accelerates faster is seen as if it did not.
+/// If the position moves faster than the velocity limit, it counts as a jump. If it accelerates too fast, its
+/// acceleration counts as 0.
 FollowPlanner::Wanted FollowPlanner::wanted_at(double place, const FollowLimits &limits,
                                                double dt) const noexcept {
-    constexpr double SHARE = 0.5;  // of the acceleration; the other is for catching up
+    constexpr double SHARE = 0.5;  // part of the acceleration; the rest is for catching up
     const double moved = (place - wanted_) / dt;
     const double velocity = std::abs(moved) <= limits.velocity ? moved : 0.0;
     const double rise = (velocity - wanted_velocity_) / dt;
@@ -86,11 +88,12 @@ void FollowPlanner::record(double before, double dt) noexcept {
     velocity_ = velocity;
 }
 
-/// There at once, if the samples keep the limits and can follow the place from there.
+/// Moves to the position in this cycle, if the samples keep the limits and can follow the position
+/// afterwards.
 bool FollowPlanner::take(const Wanted &wanted, const FollowLimits &limits, double dt) noexcept {
     const double place = wanted.place;
     const double v = (place - motion_.position) / dt;
-    // With the velocity of the place in the next cycle, and its acceleration after that.
+    // Assumes the velocity of the position for the next cycle, and its acceleration after that.
     const std::array<double, 4> a{acceleration_, (v - velocity_) / dt,
                                   (wanted.velocity - v) / dt + wanted.acceleration, wanted.acceleration};
     constexpr double SLACK = 1.0 + 1e-9;
@@ -104,7 +107,7 @@ bool FollowPlanner::take(const Wanted &wanted, const FollowLimits &limits, doubl
     }
     AxisMotion next = motion_;
     next.position = next.target = place;
-    // The difference of two samples is the velocity between them.
+    // The difference of two samples is the average velocity between them.
     next.velocity = v + 0.5 * a[1] * dt;
     next.acceleration = limits.jerk > 0 ? a[1] : 0.0;
     if (v == 0.0 && wanted.velocity == 0.0) {
@@ -117,7 +120,7 @@ bool FollowPlanner::take(const Wanted &wanted, const FollowLimits &limits, doubl
     return true;
 }
 
-/// Seen from the place, as it moves and accelerates now, it moves to standstill there.
+/// Catches up: moves to standstill relative to the position, with its current velocity and acceleration.
 bool FollowPlanner::pursue(const Wanted &wanted, const FollowLimits &limits, double dt) noexcept {
     const double bend = limits.jerk > 0 ? wanted.acceleration : 0.0;
     const double place = wanted.place;
@@ -127,7 +130,7 @@ bool FollowPlanner::pursue(const Wanted &wanted, const FollowLimits &limits, dou
     relative.velocity = motion_.velocity - (speed - 0.5 * bend * dt);
     relative.acceleration = motion_.acceleration - bend;
     relative.target = 0;
-    const double ahead = relative.rest() < 0 ? 1.0 : -1.0;  // direction of the way to the place
+    const double ahead = relative.rest() < 0 ? 1.0 : -1.0;  // direction to the position
     relative.max_velocity = std::max(0.0, limits.velocity - speed * ahead);
     relative.max_acceleration = limits.acceleration - std::abs(bend);
     relative.step(dt);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One coordinate that follows a place which somebody else moves. While that keeps the limits, the coordinate
-// is there without lag; where it jumps, is too fast or leaves the range, the coordinate catches up within its
-// own limits.
+// Motion of one coordinate that follows a commanded position. If the command is within the limits, the
+// coordinate equals it without lag. If the command jumps, is too fast or leaves the range, the coordinate
+// catches up within its own limits.
 #pragma once
 
 #include "trajectory/follow/axis_motion.hh"
@@ -10,28 +10,28 @@ namespace mw::trajectory {
 
 struct FollowLimits {
     double velocity = 0, acceleration = 0;
-    double jerk = 0;           ///< 0: none
-    double low = 0, high = 0;  ///< range; never left from inside
+    double jerk = 0;           ///< [unit/s^3]; 0: no jerk limit
+    double low = 0, high = 0;  ///< range of the position; the coordinate does not leave it
 };
 
-/// All functions: servo thread.
+/// Call all functions in the servo thread only.
 class FollowPlanner {
   public:
     double position() const noexcept { return motion_.position; }
-    double velocity() const noexcept { return velocity_; }  ///< of the last cycle [unit/s]
+    double velocity() const noexcept { return velocity_; }  ///< velocity of the last cycle [unit/s]
     bool isAtRest() const noexcept { return velocity_ == 0.0 && motion_.isAtRest(); }
 
-    /// At rest at `at`.
+    /// Sets the position to `at`, at standstill.
     void reset(double at) noexcept;
-    /// The zero of the coordinate has moved: its position and the place that it follows change by `by`.
+    /// Shifts the position and the command by `by`, because the origin has moved.
     void shift(double by) noexcept;
-    /// One period towards `wanted`, a number.
+    /// Follows the command `wanted`, a finite number, for one cycle of `dt` [s].
     void follow(double wanted, const FollowLimits &limits, double dt) noexcept;
-    /// One period of a stop.
+    /// Brakes for one cycle of `dt` [s].
     void brake(const FollowLimits &limits, double dt) noexcept;
 
   private:
-    /// The place that is followed, with its velocity and acceleration in this cycle.
+    /// The commanded position, with its velocity and acceleration in this cycle.
     struct Wanted {
         double place, velocity, acceleration;
     };
@@ -41,8 +41,9 @@ class FollowPlanner {
     void record(double before, double dt) noexcept;
 
     AxisMotion motion_;
-    double velocity_ = 0, acceleration_ = 0;   ///< differences of the last samples
-    double wanted_ = 0, wanted_velocity_ = 0;  ///< in the last cycle
+    double velocity_ = 0,
+           acceleration_ = 0;  ///< velocity and acceleration, from differences of the last samples
+    double wanted_ = 0, wanted_velocity_ = 0;  ///< command of the last cycle
 };
 
 }  // namespace mw::trajectory

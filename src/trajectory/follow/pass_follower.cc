@@ -40,7 +40,7 @@ HelixState PassFollower::helix(const PassLeg &leg, const SpindleReading &spindle
             pass_.direction * spindle.turns_per_s2 * per_turn};
 }
 
-/// From this state the speed at the end of the leg can be kept.
+/// True if the speed at the end of the leg can be reached from this state within the leg.
 bool PassFollower::canStop(const MotionState &next, const PassLeg &leg) const noexcept {
     if (settled_speed(next, limits_.jerk) <= leg.v_out && leg.v_out > 0) {
         return true;
@@ -49,7 +49,7 @@ bool PassFollower::canStop(const MotionState &next, const PassLeg &leg) const no
            leg.start_s + leg.length;
 }
 
-/// All legs that the tool then touches allow its speed, and the way that is left is enough.
+/// True if the speed is allowed on all legs up to `next`, and the remaining distance is long enough.
 bool PassFollower::isAllowed(const PathStore &store, const MotionState &next) const noexcept {
     const double highest = std::max(next.v, settled_speed(next, limits_.jerk));
     Sequence leg = leg_;
@@ -66,7 +66,7 @@ bool PassFollower::isAllowed(const PathStore &store, const MotionState &next) co
     return false;
 }
 
-/// The lowest jerk with which the tool does not run backwards.
+/// The lowest jerk with which the tool does not reverse.
 double PassFollower::lowest_jerk(double low, double high, double dt) const noexcept {
     if (state_.v <= 0 && state_.a <= 0) {
         return 0;
@@ -77,8 +77,8 @@ double PassFollower::lowest_jerk(double low, double high, double dt) const noexc
     });
 }
 
-/// Where `jerk` would leave too little way in the last leg: the stop begins within the cycle, at the moment
-/// that leads to the very end.
+/// Begins the stop of the last leg if `jerk` would make the rest too short. The stop begins within the cycle,
+/// at the time that leads to the end of the leg.
 bool PassFollower::begin_stop(const PathStore &store, double jerk, double dt) noexcept {
     const PassLeg &last = store.leg(pass_.last);
     const double end = last.start_s + last.length;
@@ -107,7 +107,7 @@ bool PassFollower::step(const PathStore &store, const SpindleReading &spindle, d
     } else {
         const double low_a = std::max(-limits_.jerk, (-limits_.acceleration - state_.a) / dt);
         const double high_a = std::min(limits_.jerk, (limits_.acceleration - state_.a) / dt);
-        // Never backwards.
+        // The tool must not reverse.
         const double low = lowest_jerk(low_a, high_a, dt);
         const double wanted =
             pursuit_.jerk(helix(store.leg(leg_), spindle), state_, limits_, dt, low, high_a);

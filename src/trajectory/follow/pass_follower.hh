@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A pass of a thread: along the curve with the angle of a spindle, from rest to rest.
+// A pass of a thread: a motion along the curve, locked to a spindle angle, from standstill to standstill.
 #pragma once
 
 #include "trajectory/follow/spindle_pursuit.hh"
@@ -8,26 +8,26 @@
 
 namespace mw::trajectory {
 
-/// Servo thread; bounded, no allocation. It begins at rest at the start of the first leg. Formulas:
-/// docs/integrator/spindles.md.
+/// Use it in the servo thread only. It is bounded and does not allocate memory. It begins at standstill at
+/// the start of the first leg. Formulas: docs/integrator/spindles.md.
 class PassFollower {
   public:
-    /// The helix passes the start of the pass at a whole turn of the counts, whatever the speed.
+    /// Begins a pass. The helix passes its start at a full revolution of the counts, at any speed.
     void begin(const PathStore &store, const Pass &pass, const SpindleReading &spindle, double dt) noexcept;
-    /// For SpindleTrack.
+    /// Filter rate for SpindleTrack [1/s].
     double rate() const noexcept { return pursuit_.rate(); }
-    /// Stops in the least time, without regard to the helix.
+    /// Stops in the least time, without following the helix.
     void stop() noexcept { must_stop_ = true; }
-    /// One cycle of `dt`. False when the pass is over and the tool is at rest.
+    /// Advances the pass by one cycle of `dt` [s]. False when the pass is complete and the tool is stopped.
     bool step(const PathStore &store, const SpindleReading &spindle, double dt) noexcept;
 
     double s() const noexcept { return state_.x; }
     double v() const noexcept { return state_.v; }
     int spindle() const noexcept { return pass_.spindle; }
-    /// The tool is at the start and has not moved.
+    /// True if the tool is at the start and has not moved.
     bool isWaiting() const noexcept { return state_.x <= pass_.start_s && state_.v <= 0 && !stopping_; }
 
-    /// Legs that one cycle may pass at most.
+    /// Maximum number of legs in one cycle.
     static constexpr int MOST_LEGS_PER_CYCLE = 64;
 
   private:
@@ -43,7 +43,7 @@ class PassFollower {
     SpeedChangeRun stop_;
     MotionState state_;
     Sequence leg_ = 0;
-    double origin_ = 0;  ///< turns of the spindle at which the helix passes the start
+    double origin_ = 0;  ///< revolutions of the spindle at which the helix passes the start
     bool must_stop_ = false, stopping_ = false;
 };
 

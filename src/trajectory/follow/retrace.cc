@@ -8,14 +8,15 @@ namespace mw::trajectory {
 
 namespace {
 
-/// Shares of the limits: what the rate's square leaves of acceleration, and of jerk so that the sum stays
-/// below 1 at HIGHEST_RATE.
+/// SHARES: part of the acceleration limit for the squared rate and the change of the rate together.
+/// TURN_SHARE, JERK_SHARE: parts of the jerk limit for the terms 3 A r alpha and V j. With the cube of
+/// HIGHEST_RATE, the sum for the jerk is below 1.
 constexpr double SHARES = 0.96, TURN_SHARE = 0.25, JERK_SHARE = 0.3;
-constexpr double FASTEST_CHANGE = 50;  ///< of the rate [1/s]
-/// A place between samples is made of those up to so far beside it.
+constexpr double FASTEST_CHANGE = 50;  ///< maximum change of the rate [1/s]
+/// A position between samples depends on up to this number of samples on each side.
 constexpr std::int64_t BESIDE = 4;
 
-/// How fast a rate may change where samples use so much of the limits [1/s].
+/// Maximum change of the rate [1/s] at a rate, for samples with this use of the limits.
 double change_of_rate(const Retrace::Use &use, double rate) noexcept {
     double change = FASTEST_CHANGE;
     const double share = SHARES - rate * rate;
@@ -57,14 +58,15 @@ void Retrace::include(const Use &use) noexcept {
     block.a_over_j = std::max(block.a_over_j, use.a_over_j);
 }
 
-/// Sample `back` before the newest; beyond what there is, the outermost.
+/// The sample `back` before the newest, clamped to the first and last sample.
 const geometry::Pose &Retrace::sample(std::int64_t back) const noexcept {
     const auto most = static_cast<std::int64_t>(std::min(count_, CAPACITY)) - 1;
     const auto n = static_cast<std::uint64_t>(std::clamp<std::int64_t>(back, 0, most));
     return samples_[(count_ - 1 - n) % CAPACITY];
 }
 
-/// Cubic B-spline with the samples as control points: its derivatives are means of their differences.
+/// Cubic B-spline with the samples as control points. Its derivatives are averages of the differences of
+/// samples.
 geometry::Pose Retrace::pose_at(double samples) const noexcept {
     const double floor = std::floor(samples);
     const double f = samples - floor;
@@ -72,7 +74,7 @@ geometry::Pose Retrace::pose_at(double samples) const noexcept {
     const double g = 1.0 - f;
     const double f2 = f * f;
     const geometry::Pose &mid = sample(back);
-    // As a difference from one of them: little is lost to rounding.
+    // Differences to one sample reduce the rounding error.
     const auto off = [&](std::int64_t n) { return sample(n) - mid; };
     const geometry::Pose sum = off(back + 1) * (g * g * g / 6.0) +
                                off(back - 1) * ((1.0 + 3.0 * f + 3.0 * f2 - 3.0 * f2 * f) / 6.0) +
@@ -80,7 +82,8 @@ geometry::Pose Retrace::pose_at(double samples) const noexcept {
     return mid + sum;
 }
 
-/// Of the samples from `newest` to `oldest` before the newest of all, and those beside them.
+/// Maximum use of the limits of the samples from `newest` to `oldest` before the newest one, and of adjacent
+/// samples.
 Retrace::Use Retrace::most_between(std::int64_t newest, std::int64_t oldest) const noexcept {
     const auto kept = static_cast<std::int64_t>(std::min(count_, CAPACITY)) - 1;
     const auto last = static_cast<std::int64_t>(count_) - 1;
@@ -106,7 +109,8 @@ void Retrace::start() noexcept {
     isAway_ = true;
 }
 
-/// With what the samples allow that it passes until it stands: they may be slower than the fastest of all.
+/// Brakes with the limits of the samples that the stop passes. They may allow more than the fastest sample of
+/// all.
 void Retrace::stop(double dt) noexcept {
     if (way_.isAtRest()) {
         return;

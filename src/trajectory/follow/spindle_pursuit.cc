@@ -10,25 +10,25 @@ namespace mw::trajectory {
 
 namespace {
 
-/// Decay of a deviation, as a part of the rate.
+/// Decay rate of a deviation, as a fraction of the filter rate.
 constexpr double DECAY = 0.67;
-/// Of the jerk limit that the step of an encoder may take, about.
+/// Approximate multiple of the jerk limit for the step of an encoder times rate^3.5.
 constexpr double STEP_JERK = 4;
-/// Of the acceleration, at least, beside that of the helix.
+/// Minimum acceleration for the approach, as a fraction of the limit, in addition to that of the helix.
 constexpr double LEAST_ACCELERATION = 0.02;
 
-/// The jerk with which a deviation decays with `rate` [1/s], three times in series.
+/// The jerk with which a deviation decays with three equal poles at `rate` [1/s].
 double decaying(const MotionState &relative, double rate) noexcept {
     return -rate * (3 * relative.a + rate * (3 * relative.v + rate * relative.x));
 }
 
-/// No less than any jerk until the deviation has decayed, whose parts may cancel now.
+/// An upper bound of this jerk until the deviation has decayed. The terms of the current jerk may cancel.
 double largest_decaying(const MotionState &relative, double rate) noexcept {
     return rate *
            (3 * std::abs(relative.a) + rate * (3 * std::abs(relative.v) + rate * std::abs(relative.x)));
 }
 
-/// Where a tool in this state relative to the helix is when it has the helix's speed.
+/// Position of the tool relative to the helix when it reaches the speed of the helix.
 double place_when_as_fast(const MotionState &relative, const MotionLimits &limits) noexcept {
     return relative.x + speed_change(relative, 0, limits.acceleration, limits.jerk).distance;
 }

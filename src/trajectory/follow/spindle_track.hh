@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speed and acceleration of a spindle from its counted revolutions alone: a separate speed signal may be
-// unsigned or late. Realtime-safe.
+// Speed and acceleration of a spindle, calculated from its counts only, because a separate speed signal may
+// be unsigned or late. Realtime-safe.
 #pragma once
 
 #include <algorithm>
@@ -11,18 +11,18 @@
 
 namespace mw::trajectory {
 
-/// A filter of constant acceleration with fading memory: what a change of the acceleration leaves decays with
-/// one rate, three times in series. Source: Brookner, Tracking and Kalman Filtering Made Easy (1998), the
-/// critically damped g-h-k filter.
+/// A filter for constant acceleration with fading memory. The effect of a change of the acceleration decays
+/// with three equal poles. Source: Brookner, Tracking and Kalman Filtering Made Easy (1998), the critically
+/// damped g-h-k filter.
 class SpindleTrack {
   public:
-    /// Counted turns at the start of a cycle of `dt` seconds.
+    /// Takes the counted revolutions at the start of a cycle of `dt` [s].
     void take(double turns, double dt) noexcept {
         observe_step(turns);
         turns_ += dt * (speed_ + 0.5 * dt * acceleration_);
         speed_ += dt * acceleration_;
         const double missed = turns - turns_;
-        if (std::abs(missed) > JUMP) {  // the counter was set, or this is the first count
+        if (std::abs(missed) > JUMP) {  // the counter was reset, or this is the first count
             turns_ = turns;
             readings_ = 1;
             return;
@@ -37,17 +37,17 @@ class SpindleTrack {
     double turns_per_s() const noexcept { return speed_; }
     double turns_per_s2() const noexcept { return acceleration_; }
 
-    /// Step of the encoder [turns]: the median of the second differences of its counts that are not zero. At
-    /// a steady speed all of them are one step. Counts that are read at uneven times make it larger.
+    /// Resolution of the encoder [rev]: the median of the nonzero second differences of its counts. At a
+    /// constant speed all of them are one step. If counts are read at uneven times, the result is larger.
     double step() const noexcept { return step_; }
     void set_rate(double rate) noexcept { rate_ = rate; }
 
-    static constexpr double JUMP = 0.5;            ///< [turns]
-    static constexpr double SMALLEST_STEP = 1e-6;  ///< [turns]
-    /// A second difference changes the median by this part of it at most; the n-th one since the start by
+    static constexpr double JUMP = 0.5;            ///< [rev]
+    static constexpr double SMALLEST_STEP = 1e-6;  ///< [rev]
+    /// Maximum relative change of the median by one second difference. For the n-th one since the start it is
     /// 1/n.
     static constexpr double STEP_GAIN = 0.02;
-    static constexpr double HIGHEST_RATE = 0.6;  ///< in a cycle
+    static constexpr double HIGHEST_RATE = 0.6;  ///< maximum filter rate times the period
 
   private:
     void observe_step(double turns) noexcept {
@@ -65,24 +65,24 @@ class SpindleTrack {
 
     double turns_ = 0, speed_ = 0, acceleration_ = 0;
     double last_ = 0, before_ = 0;
-    int readings_ = 0;  ///< since the counter was set, up to 2
+    int readings_ = 0;  ///< number of readings since the counter was reset, at most 2
     double step_ = JUMP;
-    double differences_ = 0;  ///< that have been seen, up to 1/STEP_GAIN
-    double rate_ = 150;       ///< [1/s], until somebody follows
+    double differences_ = 0;  ///< number of second differences, at most 1/STEP_GAIN
+    double rate_ = 150;       ///< [1/s]; a tap or a pass sets its own rate
 };
 
-/// What is known of a spindle in a servo cycle.
+/// Measured data of a spindle in a servo cycle.
 struct SpindleReading {
     double turns = 0;
     double turns_per_s = 0;
     double turns_per_s2 = 0;
     SpindleBrakings brakings{};
-    double step = SpindleTrack::JUMP;  ///< of its encoder [turns]
-    /// Revolutions until standstill if it were commanded to reverse now; 0: not known.
+    double step = SpindleTrack::JUMP;  ///< resolution of its encoder [rev]
+    /// Revolutions to standstill after a reverse command now; 0: not known.
     double overrun() const noexcept { return braking_at(brakings, turns_per_s).overrun(turns_per_s); }
 };
 
-/// What the executor knows of a spindle.
+/// Spindle data of the executor.
 struct FollowedSpindle {
     SpindleTrack track;
     SpindleBrakings brakings{};

@@ -17,7 +17,7 @@ void TapFollower::begin(const TapTerms &terms, const SpindleReading &spindle, do
     pursuit_.begin(following_rate(terms.per_turn, spindle.step, limits_.jerk, dt),
                    std::max(TapTuning::MET, TapTuning::MET_STEPS * spindle.step) * terms.per_turn);
     const double run_in = run_in_distance(terms.per_turn * std::abs(spindle.turns_per_s), limits_);
-    // The helix goes through the start at a whole turn, so that a hole may be tapped again.
+    // The helix passes the start at a full revolution, so that a hole can be tapped again.
     origin_ = std::ceil(direction_ * spindle.turns + run_in / terms.per_turn);
 }
 
@@ -44,9 +44,9 @@ TapFollower::Turning TapFollower::read(const SpindleReading &spindle) const noex
     return t;
 }
 
-/// What the measured angle says of where the tap is.
+/// Updates the phase from the measured angle.
 void TapFollower::decide(const Turning &t, double dt) noexcept {
-    const double cycle = 0.5 * std::abs(t.speed) * dt;  // what the command waits for on average
+    const double cycle = 0.5 * std::abs(t.speed) * dt;  // average delay until the command takes effect
     switch (phase_) {
     case TapPhase::WAITING: phase_ = pursuit_.hasMet() ? TapPhase::IN : TapPhase::WAITING; [[fallthrough]];
     case TapPhase::IN: {
@@ -68,7 +68,7 @@ void TapFollower::decide(const Turning &t, double dt) noexcept {
     }
 }
 
-/// A tool that is stopped follows the spindle while this runs down.
+/// While the tap stops, the tool follows the spindle until the spindle has run down.
 bool TapFollower::isFollowing(const Turning &t) noexcept {
     if (phase_ != TapPhase::STOPPING) {
         return true;
@@ -83,7 +83,8 @@ double TapFollower::place_at_rest(const MotionState &from) const noexcept {
     return from.x + speed_change(from, 0, limits_.acceleration, limits_.jerk).distance;
 }
 
-/// On the side +1 or -1: within the speed, and able to stop within the room.
+/// True if, on the side +1 or -1, the state is within the speed limit and can stop within the range of the
+/// line.
 bool TapFollower::isWithin(const MotionState &next, double side) const noexcept {
     const double settled = settled_speed(next, limits_.jerk);
     const double wall = side > 0 ? terms_.high : -terms_.low;
@@ -93,7 +94,7 @@ bool TapFollower::isWithin(const MotionState &next, double side) const noexcept 
 TapFollower::JerkRange TapFollower::jerk_range(double dt) const noexcept {
     const double low = std::max(-limits_.jerk, (-limits_.acceleration - state_.a) / dt);
     const double high = std::min(limits_.jerk, (limits_.acceleration - state_.a) / dt);
-    // Before the helix is met the tool does not run backwards.
+    // Before the tool reaches the helix, it must not reverse.
     const bool waiting = phase_ == TapPhase::WAITING;
     JerkRange range;
     range.low = -highest_allowed(-high, -low, [&](double negative) {
@@ -112,14 +113,15 @@ void TapFollower::follow(const Turning &t, double dt) noexcept {
     lost_ = lost_ || (pursuit_.hasMet() && std::abs(pursuit_.ahead()) > TapTuning::LOST * terms_.per_turn);
 }
 
-/// Rest in the least time, from the present state on.
+/// Begins a stop in the least time from the current state.
 void TapFollower::begin_run(double dt) noexcept {
     run_.begin(speed_change(state_, 0, limits_.acceleration, limits_.jerk));
     running_ = true;
     run_.advance(state_, dt);
 }
 
-/// To the start in the least time, without passing it: that would reverse the backlash of the drive.
+/// Moves to the start in the least time, without passing it. A reversal there would include the backlash of
+/// the drive.
 void TapFollower::go_home(double dt) noexcept {
     const JerkRange range = jerk_range(dt);
     const double side = place_at_rest(state_) < 0 ? 1.0 : -1.0;

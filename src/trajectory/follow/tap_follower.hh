@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Rigid tapping: along a line with the angle of a spindle, in, through the reversal and back. Knows only the
-// place on the line and what is measured of the spindle. Formulas: docs/integrator/spindles.md.
+// Rigid tapping: a motion along a line, locked to a spindle angle, to the bottom and back through the
+// reversal. It uses only the position on the line and the measurements of the spindle. Formulas:
+// docs/integrator/spindles.md.
 #pragma once
 
 #include <cstdint>
@@ -12,49 +13,50 @@
 namespace mw::trajectory {
 
 enum class TapPhase : std::uint8_t {
-    WAITING,   ///< stands at the start, or gains speed, until it has met the helix
-    IN,        ///< follows to the bottom
-    TURNING,   ///< the spindle has been told to turn back
-    BACK,      ///< it does, and the tool follows out
-    LEAVING,   ///< the spindle has been told to turn forward again
-    HOME,      ///< it does; the tool goes to the start by itself
-    STOPPING,  ///< a stop: the spindle is off, the tool follows it until it is stopped
+    WAITING,   ///< the tool is stopped at the start, or accelerates, until it reaches the helix
+    IN,        ///< the tool follows the spindle to the bottom
+    TURNING,   ///< the spindle is commanded to reverse
+    BACK,      ///< the spindle runs in reverse, and the tool follows it out
+    LEAVING,   ///< the spindle is commanded to run forward again
+    HOME,      ///< the spindle runs forward; the tool returns to the start by itself
+    STOPPING,  ///< abort: the spindle is off, and the tool follows it until it is stopped
     OVER,
 };
 
-/// The ideas: the spindle is told to turn back so much before the bottom that it stands there; when it really
-/// turns back is seen from its measured angle alone, which the tool follows all the time.
+/// The spindle is commanded to reverse ahead of the bottom by its overrun, so that it stops at the bottom.
+/// The tool follows the measured angle all the time. So only this angle determines the actual reversal.
 class TapFollower {
   public:
-    /// From rest at x 0.
+    /// Begins a tap at standstill at x = 0.
     void begin(const TapTerms &terms, const SpindleReading &spindle, double dt) noexcept;
-    /// For SpindleTrack.
+    /// Filter rate for SpindleTrack [1/s].
     double rate() const noexcept { return pursuit_.rate(); }
-    /// An abort: no turning back, no way home.
+    /// Aborts the tap: the spindle does not reverse, and the tool does not return.
     void stop(const SpindleReading &spindle) noexcept;
-    /// One cycle of `dt`.
+    /// Advances the tap by one cycle of `dt` [s].
     void step(const SpindleReading &spindle, double dt) noexcept;
 
     double x() const noexcept { return state_.x; }
     double v() const noexcept { return state_.v; }
     TapPhase phase() const noexcept { return phase_; }
-    /// Speed of the spindle that is wanted over that which it was started with; 0: off.
+    /// Commanded spindle speed, as a factor of the speed with which it was started; 0: off.
     double spindle_factor() const noexcept;
-    /// The tool is at the start and has not moved.
+    /// True if the tool is at the start and has not moved.
     bool isWaiting() const noexcept { return phase_ == TapPhase::WAITING && state_.x <= 0 && state_.v <= 0; }
     bool isOver() const noexcept { return phase_ == TapPhase::OVER; }
-    /// The tool has lost the helix: the spindle has not turned back in time, jumped, or is too much for it.
+    /// True if the tool has lost the helix: the spindle did not reverse in time, its angle jumped, or it was
+    /// too fast.
     bool isLost() const noexcept { return lost_; }
 
   private:
-    /// Of the spindle, counted in the sense of the way in.
+    /// Spindle data; positive in the direction of the cut.
     struct Turning {
-        double turned = 0;   ///< since the helix passed the start, as measured
-        double speed = 0;    ///< [turns/s]
-        double overrun = 0;  ///< turns until it stands, were it told now to turn back
+        double turned = 0;   ///< measured revolutions since the helix passed the start
+        double speed = 0;    ///< [rev/s]
+        double overrun = 0;  ///< revolutions to standstill after a reverse command now
         HelixState helix;
     };
-    /// Jerks that keep the limits and the room of the line.
+    /// Range of jerks that keep the limits and the range of the line.
     struct JerkRange {
         double low = 0, high = 0;
     };
@@ -71,13 +73,14 @@ class TapFollower {
     TapTerms terms_;
     MotionLimits limits_;
     TapPhase phase_ = TapPhase::OVER;
-    double direction_ = 1;  ///< of the spindle's counts on the way in
-    double origin_ = 0;     ///< counted turns at which the helix passes the start
+    double direction_ = 1;  ///< direction of the spindle's counts during the cut
+    double origin_ = 0;     ///< counted revolutions at which the helix passes the start
     MotionState state_;
     SpindlePursuit pursuit_;
-    SpeedChangeRun run_;  ///< to rest
+    SpeedChangeRun run_;  ///< a stop
     bool running_ = false, lost_ = false, stopped_ = false;
-    double stop_turned_ = 0, run_out_ = 0;  ///< of a stop [turns]
+    double stop_turned_ = 0,
+           run_out_ = 0;  ///< revolutions at the start of a stop, and maximum revolutions after it
 };
 
 }  // namespace mw::trajectory
