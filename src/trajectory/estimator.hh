@@ -19,8 +19,8 @@ enum class Binding : std::uint8_t { FEED, VELOCITY, ACCELERATION, JERK, TOLERANC
 struct MoveEstimate {
     MoveTag tag;
     double seconds = 0;
-    double seconds_at_feed =
-        0;  ///< time at the programmed feed with the feed override, without acceleration [s]; 0 for rapids
+    /// Time at the programmed feed with the feed override, without acceleration [s]; 0 for rapids.
+    double seconds_at_feed = 0;
     double top_velocity = 0;  ///< maximum speed along the feed length [unit/s]
     Binding binding = Binding::FEED;
     int axis = -1;  ///< geometry::Axis of the binding limit, XYZ_NORM for the norm, -1 for none
@@ -82,8 +82,8 @@ class Estimator {
     double move_middle_ = 0;  ///< speed in the middle of the move
     std::uint64_t standing_cycles_ = 0;
     double skipped_ = 0,
-           skipped_s_ =
-               0;  ///< length of the newest move that is not simulated; total time that is not simulated [s]
+           /// Length of the newest move that is not simulated; total time that is not simulated [s].
+        skipped_s_ = 0;
     bool isComplete_ = true;
     std::array<Pose, 4> last_{};
     std::size_t kept_ = 0;  ///< number of positions in `last_` from consecutive cycles

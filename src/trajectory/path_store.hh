@@ -77,15 +77,14 @@ struct Pass {
 struct CurvePlan {
     struct Stop {
         Sequence behind = 0;  ///< the stop begins at the end of this cell of the motion
-        Sequence begin = 0,
-                 end =
-                     0;  ///< cells of the stop, `end` excluded; none if the motion itself ends at standstill
+        /// Cells of the stop, `end` excluded; none if the motion itself ends at standstill.
+        Sequence begin = 0, end = 0;
     };
     static constexpr std::size_t MOST_STOPS = 192;
 
     std::uint64_t plan = 0;  ///< number of the plan, increasing
-    Sequence behind =
-        0;  ///< the plan continues the current plan from the end of this cell; 0: it begins at standstill
+    /// The plan continues the current plan from the end of this cell; 0: it begins at standstill.
+    Sequence behind = 0;
     Sequence begin = 0, end = 0;  ///< cells of the motion, `end` excluded
     std::uint64_t brakes = 0;     ///< Snapshot::brakes for which a start from standstill was planned; with
                                   ///< another value the plan is ignored
@@ -105,8 +104,8 @@ enum class Motion : std::uint8_t { REST, LOCKED, CURVE };
 struct Snapshot {
     std::uint64_t cycle = 0;
     std::uint64_t plan = 0;  ///< number of the last accepted plan
-    std::uint64_t brakes =
-        0;  ///< count of holds at standstill and of dropped paths; plans made before are ignored
+    /// Count of holds at standstill and of dropped paths; plans made before are ignored.
+    std::uint64_t brakes = 0;
     std::uint64_t drops = 0;  ///< count of dropped paths; the planner begins a new path after each
     Motion motion = Motion::REST;
     bool isDropping = false;  ///< the executor stops, and the rest of the path will be dropped

@@ -17,8 +17,8 @@ struct PlannerSettings {
     double period_s = 1e-3;           ///< servo period
     std::uint64_t latency = 3;        ///< servo cycles from the snapshot for a plan to the start of this plan
     SpeedChooser *chooser = nullptr;  ///< planner module that chooses speeds; null: none; must remain valid
-    bool is_estimate =
-        false;  ///< for the estimator: no hold or abort can occur, so a plan has only its last stop
+    /// For the estimator: no hold or abort can occur, so a plan has only its last stop.
+    bool is_estimate = false;
 };
 
 /// Call all methods in the planner thread only. Allocates memory. Equal calls give bit-identical results.

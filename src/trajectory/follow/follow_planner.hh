@@ -41,8 +41,8 @@ class FollowPlanner {
     void record(double before, double dt) noexcept;
 
     AxisMotion motion_;
-    double velocity_ = 0,
-           acceleration_ = 0;  ///< velocity and acceleration, from differences of the last samples
+    /// Velocity and acceleration, from differences of the last samples.
+    double velocity_ = 0, acceleration_ = 0;
     double wanted_ = 0, wanted_velocity_ = 0;  ///< command of the last cycle
 };
 

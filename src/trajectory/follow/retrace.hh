@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Reverse run (negative adaptive feed): back along the commanded path, and forward again. Samples that were
-// commanded at rate 1 within V, A, J keep these limits at the rate r, with the changes alpha and j of r, if r
-// <= 1, A r^2 + V alpha <= A and J r^3 + 3 A r alpha + V j <= J in every coordinate.
+// commanded at rate 1 within V, A, J keep these limits at the rate r, with the changes alpha and j of r, if
+// r <= 1, A r^2 + V alpha <= A and J r^3 + 3 A r alpha + V j <= J in every coordinate.
 #pragma once
 
 #include <array>

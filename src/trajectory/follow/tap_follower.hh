@@ -79,8 +79,8 @@ class TapFollower {
     SpindlePursuit pursuit_;
     SpeedChangeRun run_;  ///< a stop
     bool running_ = false, lost_ = false, stopped_ = false;
-    double stop_turned_ = 0,
-           run_out_ = 0;  ///< revolutions at the start of a stop, and maximum revolutions after it
+    /// Revolutions at the start of a stop, and maximum revolutions after it.
+    double stop_turned_ = 0, run_out_ = 0;
 };
 
 }  // namespace mw::trajectory

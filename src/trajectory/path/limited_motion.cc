@@ -10,8 +10,8 @@ namespace mw::trajectory {
 // and falls to 0. Its integral is the change of speed: peak^2 = J dv + a^2 / 2.
 SpeedChange speed_change(const MotionState &from, double to_v, double acceleration, double jerk) noexcept {
     const double change = to_v - from.v;
-    const double by_itself =
-        0.5 * from.a * std::abs(from.a) / jerk;  // change of speed while the acceleration goes to 0
+    // Change of speed while the acceleration goes to 0.
+    const double by_itself = 0.5 * from.a * std::abs(from.a) / jerk;
     const double side = change >= by_itself ? 1.0 : -1.0;
     const double dv = side * change, a = side * from.a;
     const double free_peak = std::sqrt(std::max(0.0, jerk * dv + 0.5 * a * a));

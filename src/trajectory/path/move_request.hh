@@ -16,8 +16,8 @@ struct MoveRequest {
     double corner_scale = 1;  ///< part of the possible speed on curves (G64 R)
     bool isRapid = false;     ///< rapid move: its speed is scaled by Scales::rapid
     bool isOverridable = true;
-    bool isAngular =
-        false;  ///< the feed length is over A B C; the operator's maximum velocity does not apply
+    /// The feed length is over A B C; the operator's maximum velocity does not apply.
+    bool isAngular = false;
     double feed_per_revolution = 0;  ///< above 0: the speed follows a spindle [unit/rev]
     int spindle = 0;
     bool isSynched() const noexcept { return feed_per_revolution > 0; }
@@ -29,8 +29,8 @@ struct MoveRequest {
     bool isTap = false;
     bool isTapped = false;  ///< this move is the cut or the retract of a tap
     double tap_scale = 1;   ///< spindle speed of the retract divided by that of the cut
-    double room_before = 0,
-           room_behind = 0;  ///< clearance of the line before its start and after its end [unit]
+    /// Clearance of the line before its start and after its end [unit].
+    double room_before = 0, room_behind = 0;
 };
 
 /// True if the motion must stop between `a` and `b` in any path mode: at a gate, before and after a probing

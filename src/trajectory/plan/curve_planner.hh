@@ -59,8 +59,8 @@ class CurvePlanner {
     static constexpr double RENEWAL_S = 0.2;   ///< time from one plan to the next [s]
     static constexpr double RESERVE_S = 0.15;  ///< time by which a plan may be late [s]
     static constexpr double COMMITTED_S = RENEWAL_S + RESERVE_S;
-    static constexpr double WINDOW_S =
-        0.45;  ///< length of a window with jerk limits, without the time of a stop [s]
+    /// Length of a window with jerk limits, without the time of a stop [s].
+    static constexpr double WINDOW_S = 0.45;
     static constexpr double PLANNING_S = 0.01;  ///< time from a snapshot to the first cell of its plan [s]
 
   private:

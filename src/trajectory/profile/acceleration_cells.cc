@@ -11,13 +11,15 @@ namespace {
 using Norm = PointLimits::Norm;
 
 constexpr double LEAST = 1e-30;
-/// Cells of a stretch between two points where a formula changes.
+/// Maximum number of cells of equal length between two points where a formula changes.
 constexpr double MOST_CELLS = 32;
-/// Cells are not divided into ones that take less time [s].
+/// Minimum time of a cell [s]. Shorter cells are not made by division.
 constexpr double LEAST_CELL_S = 1e-4;
-/// Part of an acceleration limit that the curve may take at full speed for a cell to count as straight.
+/// A cell counts as straight if, at maximum speed, its curvature uses less than this fraction of every
+/// acceleration limit.
 constexpr double STRAIGHT = 1e-6;
-/// Parts of the limits that are planned with: on a curve a limit may be exceeded between the ends of a cell.
+/// Fractions of the limits used for planning. On a curve, the motion may exceed these between the ends of a
+/// cell.
 constexpr double CURVE_ACCELERATION = 1 - AccelerationCells::BETWEEN, STRAIGHT_ACCELERATION = 1 - STRAIGHT;
 constexpr double CURVE_VELOCITY = 0.999;
 
@@ -25,18 +27,18 @@ double square(double x) noexcept {
     return x * x;
 }
 
-/// For a part of the limit.
+/// The norm divided by a fraction of its limit.
 Norm within(const Norm &n, double share) noexcept {
     const double scale = 1 / square(share);
     return {scale * n.aa, scale * n.ab, scale * n.bb};
 }
 
-/// Of the norm at the distance h behind the start of a cell, by the squared speed at the start.
+/// The norm at the distance h after the start of a cell, as a function of the squared speed at the start.
 Norm by_start(const Norm &n, double h) noexcept {
     return {n.aa + 4 * h * (n.ab + h * n.bb), n.ab + 2 * h * n.bb, n.bb};
 }
 
-/// Squared speed above which no acceleration keeps the norm.
+/// Squared speed above which no acceleration keeps the norm within its limit.
 double most_of(const Norm &n) noexcept {
     const double d = n.aa * n.bb - n.ab * n.ab;
     return d > 0 ? std::sqrt(n.aa / d) : 1e300;
@@ -92,7 +94,8 @@ void AccelerationCells::cut_behind(double s) {
     }
 }
 
-/// Of the cell from `from` to `to`, with the limits at these two points `at` behind its start.
+/// Makes the cell from `from` to `to`. `limits`: limits at two points; `at`: their distances from the start
+/// of the cell.
 AccelerationCell AccelerationCells::make(double from, double to, const std::array<PointLimits, 2> &limits,
                                          const std::array<double, 2> &at, bool is_straight,
                                          std::vector<Row> &rows) {
@@ -119,8 +122,8 @@ AccelerationCell AccelerationCells::make(double from, double to, const std::arra
     return cell;
 }
 
-/// The next point behind the last cell where a formula changes: spans, parts of the joints, feeds, the reach
-/// of seams.
+/// The next point after the last cell where a formula changes: the end of a span or of a part of the joints,
+/// a change of the feed, the reach of a seam.
 double AccelerationCells::next_point(const Run &run, const Span &span, double end) const noexcept {
     const double s = end_s(), rounding = rounding_at(s);
     double next = std::min(span.end_s(), end);
@@ -155,7 +158,7 @@ void AccelerationCells::begin_stretch(const Run &run, double end) {
     if (!(length > 0)) {
         return;
     }
-    // Seams whose reach ends where the stretch begins do not count.
+    // A seam whose reach ends at the start of the stretch is not taken into account.
     const double rounding = std::min(2 * rounding_at(to), 0.25 * length);
     stretch_.rest = rest_of(run, s + rounding, to - rounding);
     stretch_.place = place_at(run, s + 0.5 * length);
@@ -179,8 +182,8 @@ void AccelerationCells::begin_stretch(const Run &run, double end) {
     stretch_.end = at[0];
 }
 
-/// How much limits change between the ends of the cell, for every motion in it up to its `most_b`, over what
-/// is allowed.
+/// Bound of the change of the limits between the ends of the cell, for every motion up to its `most_b`,
+/// divided by the permitted change.
 double AccelerationCells::change_in(const AccelerationCell &cell, const PointLimits &start,
                                     const PointLimits &end) const noexcept {
     const AccelerationRange slow = range(cell, 0), fast = range(cell, cell.most_b);
@@ -189,8 +192,8 @@ double AccelerationCells::change_in(const AccelerationCell &cell, const PointLim
     return square(cell.length) * change_between(start, end, cell.length, most) / (8 * BETWEEN);
 }
 
-/// Adds cells up to `to`: one, or several where limits change too much. Where these would take less than
-/// LEAST_CELL_S, the speed is limited instead.
+/// Adds cells up to `to`: one cell, or several if the limits change too much within it. If the parts would
+/// take less than LEAST_CELL_S, the speed is limited instead.
 void AccelerationCells::add(const Run &run, double to) {
     constexpr double SLOWER = 0.7, LEAST_B = 1e-12;
     const double from = end_s();
@@ -225,7 +228,7 @@ void AccelerationCells::lay(const Run &run, double end, double b) {
     if (!(left > 0)) {
         return;
     }
-    stretch_.place = place_at(run, s + 0.5 * left);  // spans before it may have been dropped
+    stretch_.place = place_at(run, s + 0.5 * left);  // earlier spans may have been dropped
     double longest = stretch_.cell;
     if (!stretch_.is_straight) {
         const double a = stretch_.acceleration;
@@ -305,8 +308,8 @@ double AccelerationCells::lowest(const AccelerationCell &cell, double b) const n
 }
 
 double AccelerationCells::most_before(const AccelerationCell &cell, double most, double next) const noexcept {
-    // The range between the lower and the upper bound is concave in b. Newton's steps from above come down
-    // to its zero without passing it.
+    // The range between the lower and the upper bound of the acceleration is concave in b. So Newton's method
+    // from above finds its zero without passing it.
     constexpr int MOST_STEPS = 40;
     constexpr double ROUNDING = 1e-9;
     const double per = 1 / (2 * cell.length);

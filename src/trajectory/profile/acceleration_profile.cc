@@ -9,20 +9,21 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Longest cell of time [s]: another plan or a stop begins at the start of one.
+/// Maximum time of a cell [s]. A new plan or a stop begins at the start of a cell.
 constexpr double MOST_CELL_S = AccelerationCells::CELL_S;
-/// The same of the first one from standstill, in servo periods: a stop that is requested in the first period
+/// Time of the first cell from standstill, in servo periods. So a stop that is requested in the first period
 /// begins in the second.
 constexpr double FIRST_CELL = 1.2;
-/// Part of the squared speed by which a plan may exceed what a stop needs: rounding, and rows within a cell.
+/// Fractions by which the squared speed of a plan may exceed the squared speed from which a stop is possible:
+/// by rounding, and within a cell.
 constexpr double ROUNDING = 1e-6, WITHIN_CELL = 5e-3;
 
 double square(double x) noexcept {
     return x * x;
 }
 
-/// The motion with one acceleration from a point to the squared speed `b` after `length`. Its duration is 0
-/// if it has no speed or is shorter than rounding.
+/// The motion with constant acceleration from a point to the squared speed `b` after `length`. Its duration
+/// is 0 if the speed is 0 or the length is within rounding.
 TimeCell cell_between(const MotionPoint &from, double b, double length) noexcept {
     constexpr double LEAST_CELL_S = 1e-12;
     const double v = std::sqrt(from.b), next = std::sqrt(std::max(b, 0.0));
@@ -46,7 +47,7 @@ void AccelerationProfile::begin(double s) noexcept {
 void AccelerationProfile::take_limits(const Run &run) {
     run_ = run;
     run_.find_cap_reach();
-    // A seam at the end of what is known may lower limits before it. At a stop there is none.
+    // A seam at the end of the known curve may lower limits before it. At a stop, there is no seam.
     if (had_stop_ && run.end_s != run_end_s_) {
         cells_.cut_behind(run_end_s_ - reach_);
     }
@@ -54,14 +55,15 @@ void AccelerationProfile::take_limits(const Run &run) {
     reach_ = largest_reach(end, run.limits, period_s_);
     run_end_s_ = run.end_s;
     had_stop_ = run.has_stop;
-    // The interpolation of the joints is accurate to a part of a jerk limit.
+    // The interpolation of the joints is accurate to a fraction of a jerk limit.
     JointLimits accuracy = run.joints;
     for (std::size_t j = 0; j < static_cast<std::size_t>(accuracy.count); ++j) {
         accuracy.jerk[j] = accuracy.acceleration[j] / LEAST_RAMP_S;
     }
     run_.add_joints(joint_curve_, accuracy, time_cells_.empty() ? start_s_ : time_cells_[0].c[0]);
     drivable_end_s_ = run_.has_stop ? run_.end_s : run_.end_s - reach_;
-    // What seams leave of limits is counted by the jerk of a full acceleration within one period.
+    // The jerk that reaches full acceleration within one period defines the part of the limits that a seam
+    // uses.
     const auto set_jerk = [&](Bounds &b) { b.jerk = b.acceleration / period_s_; };
     for (std::size_t j = 0; j < joint_curve_.joints(); ++j) {
         run_.joints.jerk[j] = run_.joints.acceleration[j] / period_s_;
@@ -70,7 +72,8 @@ void AccelerationProfile::take_limits(const Run &run) {
     set_jerk(run_.limits.xyz);
 }
 
-/// Squared speed limits of a cell. `feed`: that at the start of a cell before it.
+/// Squared speed limits at both ends of a cell. `feed`: feed at the start of this or an earlier cell; it is
+/// updated.
 AccelerationProfile::Ends AccelerationProfile::limited_b(std::size_t &feed,
                                                          const AccelerationCell &cell) const noexcept {
     constexpr double INSIDE = 1e-9;
@@ -98,8 +101,8 @@ AccelerationProfile::Ends AccelerationProfile::limited_b(std::size_t &feed,
     }
 }
 
-/// Adds cells for the motion of the window with a stop behind it, and for a stop that begins now, because
-/// speed limits may have been lowered.
+/// Adds cells for the motion of the window with the following stop, and for a stop that begins now. Speed
+/// limits may have been lowered, so that this stop may be longer.
 void AccelerationProfile::lay(const State &from, double time_s) {
     cells_.drop_before(from.s + rounding_at(from.s));
     speed_.clear();
@@ -136,7 +139,7 @@ void AccelerationProfile::lay(const State &from, double time_s) {
         if (is_braking) {
             b = brake(cell, b, stop_s);
         } else {
-            // As fast as the limits allow, without braking for what follows.
+            // The maximum speed without braking for the path after it.
             const double a = cell.is_straight ? cell.least : cells_.range(cell, b).high;
             const double next = std::clamp(b + 2 * a * cell.length, 0.0, speed_[k][1]);
             t += 2 * cell.length / std::max(std::sqrt(b) + std::sqrt(next), 1e-12);
@@ -149,21 +152,22 @@ void AccelerationProfile::lay(const State &from, double time_s) {
     }
 }
 
-/// The squared speed at the end of the cell of the soonest braking; 0 with `stop_s` where it ends in the
-/// cell.
+/// The squared speed at the end of a cell with maximum braking. If the motion stops in the cell, it is 0, and
+/// `stop_s` is the position.
 double AccelerationProfile::brake(const AccelerationCell &cell, double b, double &stop_s) const noexcept {
     const double a = cell.is_straight ? -cell.least : cells_.lowest(cell, b);
     const double next = b + 2 * a * cell.length;
     if (next > 0) {
         return next;
     }
-    // What the end of the cell allows at standstill, too.
+    // The limits at the end of the cell at standstill apply, too.
     const double within = cell.is_straight ? -cell.least : std::max(a, -cell.least);
     stop_s = std::min(cell.s - b / (2 * within), cell.end_s());
     return 0;
 }
 
-/// The speed limits at the ends of the cells, and the most from which a stop is possible.
+/// Calculates the maximum squared speed at the ends of the cells from which a stop is possible, within the
+/// speed limits.
 void AccelerationProfile::pass_backward() {
     const std::size_t n = speed_.size();
     most_.assign(n + 1, 0.0);
@@ -177,7 +181,7 @@ void AccelerationProfile::pass_backward() {
     }
 }
 
-/// The motion may be above a lowered limit as long as the soonest braking needs.
+/// The motion may exceed a lowered speed limit until maximum braking reaches it.
 void AccelerationProfile::allow_braking(const State &from) {
     braked_.assign(1, from.b * (1 + ROUNDING));
     double b = from.b;
@@ -188,7 +192,7 @@ void AccelerationProfile::allow_braking(const State &from) {
     }
 }
 
-/// Adds cells of time with one acceleration: from a point to the squared speed `b` after `length`.
+/// Adds time cells with constant acceleration, from a point to the squared speed `b` after `length`.
 void AccelerationProfile::add(const State &from, double b, double length) {
     const TimeCell whole = cell_between(from, b, length);
     if (!(whole.duration > 0)) {
@@ -213,7 +217,7 @@ void AccelerationProfile::add(const State &from, double b, double length) {
 void AccelerationProfile::drive_straight(const AccelerationCell &cell, std::size_t k, State &from) {
     const double a2 = 2 * cell.least, length = cell.length, b = from.b;
     const double end = std::min(most_[k + 1], b + a2 * length);
-    // The speed between: the limit, or what is reached with full acceleration.
+    // The speed in between: the limit, or the speed that full acceleration reaches.
     const double limit = std::min(speed_[k][0], speed_[k][1]);
     const double top =
         b > limit ? std::max(limit, std::min(end, b)) : std::min(limit, 0.5 * (b + end + a2 * length));
@@ -236,7 +240,7 @@ void AccelerationProfile::drive(const AccelerationCell &cell, std::size_t k, Sta
     from = {cell.end_s(), end};
 }
 
-/// Returns the time of the motion up to the end of the cells, or of the window.
+/// Returns the time of the motion to the end of the cells or of the window [s].
 double AccelerationProfile::pass_forward(State from) {
     const double to = run_.has_stop ? run_.end_s : 1e300;
     double t = 0;
@@ -247,7 +251,7 @@ double AccelerationProfile::pass_forward(State from) {
             t += time_cells_[i].duration;
         }
         if (time_cells_.size() == old) {
-            break;  // no speed
+            break;  // the speed is 0
         }
     }
     end_s_ = from.s;
@@ -269,7 +273,7 @@ bool AccelerationProfile::plan(const Run &run, std::size_t fixed) {
     for (double time_s = window_s_;; time_s *= FARTHER) {
         lay(from, time_s);
         if (speed_.empty()) {
-            return true;  // nothing ahead is drivable
+            return true;  // the joints cannot reach the path ahead
         }
         const bool is_farthest = speed_.size() == laid;
         laid = speed_.size();
@@ -290,7 +294,8 @@ bool AccelerationProfile::plan(const Run &run, std::size_t fixed) {
     }
 }
 
-/// The end is nearer than the plan may stop: it ends in the soonest stop. False if that is behind the end.
+/// If the end is nearer than the plan may stop, the plan ends with the soonest stop. False if this stop ends
+/// after the end of the curve.
 bool AccelerationProfile::stop_soon(const State &from, std::size_t fixed) {
     const Stop stop = stop_from(from);
     if (stop.cells.empty() || stop.end_s > drivable_end_s_) {
@@ -324,7 +329,7 @@ Stop AccelerationProfile::stop_from(const State &start) {
     while (true) {
         double stop_s = cell->end_s();
         double b = brake(*cell, from.b, stop_s);
-        // A plan that stops at the end of the known curve, too, ends there except for rounding.
+        // A plan that stops at the end of the known curve also ends there, except for rounding.
         const bool is_last = k + 1 == speed_.size();
         if (is_last && b <= ROUNDING * start.b) {
             b = 0;
@@ -339,7 +344,7 @@ Stop AccelerationProfile::stop_from(const State &start) {
             break;
         }
         if (is_last) {
-            return {};  // not on what is known
+            return {};  // the stop does not end on the known curve
         }
         cell = &cell_at(++k);
     }
@@ -347,7 +352,7 @@ Stop AccelerationProfile::stop_from(const State &start) {
     return out;
 }
 
-/// The motion at the start of a cell of time, or at the end of the last one.
+/// The motion at the start of a time cell, or at the end of the last one.
 AccelerationProfile::State AccelerationProfile::state_at(std::size_t cell) const noexcept {
     if (time_cells_.empty()) {
         return {start_s_, 0};

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The shortest time along a curve within velocity and acceleration.
+// Calculates the shortest time along a curve within velocity and acceleration limits.
 //
-// Backward over the known curve: the maximum squared speed at each cell from which a stop at the end of the
-// known curve keeps every limit. Forward: the maximum acceleration to such a speed. These speeds only grow
-// when more of the curve is known, so each plan can continue the one before.
+// The backward pass over the known curve calculates the maximum squared speed at each cell from which a stop
+// at the end of the known curve is within every limit. The forward pass uses the maximum acceleration up to
+// these speeds. The speeds only grow when more of the curve is known, so each plan can continue the previous
+// one.
 #pragma once
 
 #include <algorithm>
@@ -14,15 +15,15 @@
 
 namespace mw::trajectory::profile {
 
-/// A point of the motion: its place on the curve, and the squared speed.
+/// A point of the motion: its position on the curve, and the squared speed.
 struct MotionPoint {
     double s = 0, b = 0;
 };
 
-/// Planner thread.
+/// Use it in the planner thread only.
 class AccelerationProfile final : public PathTiming {
   public:
-    /// `window_s`: planned at once. `period_s`: of the servo thread.
+    /// `window_s`: time of a window [s]. `period_s`: servo period [s].
     AccelerationProfile(double window_s, double period_s) : window_s_(window_s), period_s_(period_s) {}
 
     void begin(double s) noexcept override;
@@ -64,16 +65,17 @@ class AccelerationProfile final : public PathTiming {
     Run run_;
     curve::JointCurve joint_curve_;
     AccelerationCells cells_;
-    AccelerationCell head_, tail_;  ///< what is left of the first cell; the cell in which the run ends
-    std::size_t tail_at_ = 0;       ///< 0: none
+    AccelerationCell head_, tail_;  ///< rest of the first cell; cell in which the run ends
+    std::size_t tail_at_ = 0;       ///< index of the cell that `tail_` replaces; 0: none
     std::vector<Ends> speed_;       ///< squared speed limits
-    std::vector<double> most_;      ///< squared speeds from which a stop is possible
-    std::vector<double> braked_;    ///< squared speed of the soonest braking at the ends
+    std::vector<double> most_;      ///< maximum squared speeds from which a stop is possible
+    std::vector<double> braked_;    ///< squared speeds of maximum braking at the ends of the cells
     double start_s_ = 0, drivable_end_s_ = 0;
     std::vector<TimeCell> time_cells_;
     double end_s_ = 0;
     bool is_complete_ = false;
-    /// Of the last run: its end, the distance before it within which a seam may lower limits.
+    /// Data of the last run: whether it had a stop, its end, the distance before the end within which a seam
+    /// may lower limits.
     bool had_stop_ = false;
     double run_end_s_ = 0, reach_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Rows of a cell near caps, and those of joints.
+// Limits of a cell near caps, and limits of joints, as rows.
 #pragma once
 
 #include "trajectory/profile/rest_map.hh"
@@ -8,10 +8,10 @@
 
 namespace mw::trajectory::profile {
 
-/// What the caps around a cell leave of the limits: jumps of the tangent a part, those of the curvature one
-/// that falls with the square of the speed.
+/// The part of the limits that the caps around a cell leave. Jumps of the tangent use a fixed part, jumps of
+/// the curvature a part that is proportional to the squared speed.
 struct CapRest {
-    double v2 = 0;  ///< 1 over the square of the maximum speed
+    double v2 = 0;  ///< 1 / squared maximum speed
     PerBounds bend{}, jerk_part, acceleration_part;
 
     CapRest() noexcept {
@@ -20,23 +20,23 @@ struct CapRest {
     }
 };
 
-/// Of the cell between two places.
+/// The remaining part for the cell between two values of s.
 CapRest rest_of(const Run &run, double from, double to) noexcept;
-/// What is left of the limits of the coordinate or joint `i`, in the order of PerBounds.
+/// Remaining limits of the coordinate or joint `i`, in the order of PerBounds.
 Bounds left_of(const Bounds &b, const CapRest &rest, std::size_t i) noexcept;
 
-/// The row of a coordinate with these derivatives by the parameter. `bend`: jerk over b of jumps.
+/// The row of a coordinate with these derivatives by the parameter. `bend`: jerk of jumps divided by b.
 inline Row row_of(double q1, double q2, double q3, const Bounds &l, double bend) noexcept {
     const double a = 1 / l.acceleration, j = 1 / l.jerk;
     return {a * q1, a * q2, j * q1, 3 * j * q2, j * q3, j * bend};
 }
 
-/// Where rows of joints are set: a place of the newest cell, the number of the first of them.
+/// Position of the rows of joints: a point of the newest cell, and the number of their first row.
 struct RowPlace {
     Rows &rows;
     std::size_t place, first;
 };
-/// Sets the rows of the joints. Returns 1 over the square of their maximum speed by the parameter.
+/// Sets the rows of the joints. Returns 1 / squared maximum speed of the joints along the parameter.
 double set_joint_rows(const Run &run, const curve::JointPoint &point, const MapPoint &m, const CapRest &rest,
                       const RowPlace &to) noexcept;
 

@@ -13,32 +13,35 @@ namespace mw::trajectory::profile {
 namespace {
 
 constexpr int NODES_PER_SPAN = 3;
-/// Largest change of direction in a cell [rad].
+/// Maximum change of direction in a cell [rad].
 constexpr double TURN_PER_CELL = 0.2;
-/// Cells in the time in which the jerk limit builds up an acceleration, and in that of a span.
+/// Minimum number of cells in the time A/J, and in the time of a span.
 constexpr double CELLS_PER_RAMP = 10, CELLS_PER_SPAN = 6;
-/// Cells in the time of a start with constant jerk: the map changes there.
+/// Minimum number of cells in the time of a start with constant jerk, because the map changes there.
 constexpr double CELLS_PER_START = 25;
-/// Times of cells [s], and how much longer they may become in a time.
+/// Minimum and maximum time of a cell [s], maximum time of a cell if joints are not axes [s], maximum
+/// relative change of this time from cell to cell.
 constexpr double LEAST_CELL_S = 5e-4, MOST_CELL_S = 1e-2, MOST_JOINT_CELL_S = 2e-3, CELL_GROWTH = 0.04;
-/// Cells of a window at most, and of a way from stop to stop at least: the jerk changes where a cell ends.
+/// Maximum number of cells of a window, and minimum number between two stops. The jerk can change only at
+/// ends of cells.
 constexpr std::size_t MOST_CELLS = 2000, FEWEST_CELLS = 70;
 
 bool isAlike(const FeedLimit &a, const FeedLimit &b) noexcept {
     return a.velocity == b.velocity && a.along == b.along && a.limit_share == b.limit_share;
 }
 
-/// Time in which the jerk limit builds up an acceleration.
+/// Time A/J, in which the jerk limit builds up the maximum acceleration [s].
 double ramp_of(const Bounds &b) noexcept {
     return b.acceleration < UNLIMITED_BOUND ? b.acceleration / b.jerk : 1e300;
 }
 
-/// Way on which the direction changes by as much as in a cell at most.
+/// Distance over which the direction changes by the maximum for a cell.
 double turn_way(double direction, double bend) noexcept {
     return TURN_PER_CELL * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30));
 }
 
-/// Speed after the way ds from v with a^2 <= 2 J v (a start from rest with constant jerk) and a <= A.
+/// Speed after the distance ds from v, with a^2 <= 2 J v (a start from standstill with constant jerk) and a
+/// <= A.
 double faster(double v, double ds, double acceleration, double jerk) noexcept {
     const double by_jerk = std::pow(v * std::sqrt(v) + 1.5 * std::sqrt(2 * jerk) * ds, 2.0 / 3);
     return std::min(by_jerk, std::sqrt(v * v + 2 * acceleration * ds));
@@ -51,7 +54,7 @@ double RoughProfile::ramp_at(const Run &run, double s) noexcept {
     return node.jerk * node.rest_s * node.rest_s * node.rest_s / 6;
 }
 
-/// A cap at the node, on a span of this length, limits its speed.
+/// Limits the speed of the node to that of the caps there. `length`: length of the span.
 void RoughProfile::apply_caps(const Run &run, Node &node, double length) noexcept {
     const double rounding = 1e-6 * length + 1e-15 * std::abs(node.s);
     run.each_cap(node.s - rounding, node.s + rounding, [&](const SpeedCap &cap) {
@@ -62,7 +65,7 @@ void RoughProfile::apply_caps(const Run &run, Node &node, double length) noexcep
     });
 }
 
-/// `from_s`: end of the stretch before it; the node has the least speed of the moves in it.
+/// The node at s. `from_s`: previous node. The slowest move between both determines the speed.
 RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, double from_s, double s) noexcept {
     const CurvePoint p = curve::point_at((*run.spans)[span], s);
     Node node{s, 1e300, 1e300, 1e300, 0};
@@ -95,7 +98,7 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     node.curve_v = curve_speed(run, p);
     node.acceleration = std::min(node.acceleration, b.acceleration / n1);
     node.jerk = std::min(node.jerk, b.jerk / n1);
-    // Where the feed changes both count, unless the motion stops there.
+    // Where the feed changes, the feeds on both sides apply, unless the motion stops there.
     for (const std::size_t feed :
          {run.feed_at(s),
           run.feed_at(run.has_stop ? std::min(s + 2 * rounding_at(s), run.end_s) : s + 2 * rounding_at(s))}) {
@@ -114,9 +117,9 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
     return node;
 }
 
-/// Between two places of a cell a time T apart the speed exceeds the lower one by at most j T^2/8. Where it
-/// is near the machine's limit the cells are so short that this is within the margin. `fastest`: part of the
-/// velocity limits that the moves may use.
+/// Between two points of a cell a time T apart, the speed exceeds the lower one by at most j T^2/8. Near a
+/// velocity limit, cells are so short that this is within the margin. `fastest`: fraction of the velocity
+/// limits that the moves may use.
 void RoughProfile::apply_velocity(Node &node, double fastest) noexcept {
     constexpr double NEAR = 0.99, BETWEEN = 8e-4;
     node.v = std::min(node.v, fastest * node.machine_v);
@@ -125,8 +128,8 @@ void RoughProfile::apply_velocity(Node &node, double fastest) noexcept {
     }
 }
 
-/// `inside`: a place on the side of the node whose curve counts; `turn_v`: the speed at which the direction
-/// changes by as much as it may in the shortest cell.
+/// `inside`: a position on the side of the node whose curve applies. `turn_v`: speed at which the direction
+/// changes by its maximum in the shortest cell.
 void RoughProfile::apply_joints(const Run &run, Node &node, double inside, double &turn_v) noexcept {
     if (run.joint_curve == nullptr) {
         return;
@@ -171,7 +174,7 @@ bool RoughProfile::isInEnd(const Run &run, const Stretch &stretch, double s) noe
     return run.has_stop && s > run.end_s - stretch.end_ramp;
 }
 
-/// The next node behind `s`: thirds of spans, halves of the parts of the joints, places where the feed
+/// s of the next node after `s`: thirds of spans, halves of the parts of the joints, positions where the feed
 /// changes.
 double RoughProfile::next_place(const Run &run, const Stretch &stretch, const Span &span, double s) noexcept {
     const double rounding = rounding_at(s);
@@ -200,7 +203,7 @@ double RoughProfile::next_place(const Run &run, const Stretch &stretch, const Sp
     return next;
 }
 
-/// The speed of the last rough profile, which reached this place.
+/// Speed of the last rough profile at s; 1e300: outside.
 double RoughProfile::speed_at(double s) const noexcept {
     const auto behind =
         std::partition_point(nodes_.begin(), nodes_.end(), [&](const Node &n) { return n.s < s; });
@@ -211,10 +214,11 @@ double RoughProfile::speed_at(double s) const noexcept {
     return a.v + (b.v - a.v) * (s - a.s) / (b.s - a.s);
 }
 
-/// True if the motion is much faster in the middle between two nodes than the rough profile takes it to be.
+/// True if, in the middle between two nodes, the motion can be much faster than the rough profile assumes.
 bool RoughProfile::isFasterBetween(const Run &run, std::size_t span, const Node &a, const Node &b) noexcept {
     constexpr double FASTER = 1.25;
-    // In the middle of a way from or to rest with constant jerk: 0.5^(2/3).
+    // In the middle of a distance from or to standstill with constant jerk, the speed is 0.5^(2/3) of the
+    // final speed.
     constexpr double MIDDLE_OF_CUBE = 0.63;
     const double half = 0.5 * (b.s - a.s);
     const double middle = std::min(a.v, b.v) > 0 ? std::sqrt(0.5 * (a.v * a.v + b.v * b.v))
@@ -225,8 +229,8 @@ bool RoughProfile::isFasterBetween(const Run &run, std::size_t span, const Node 
     return reached > ends && half > rounding_at(a.s) && node_at(run, span, a.s, a.s + half).v > ends;
 }
 
-/// Lays nodes until the motion without braking takes 1.5 times what is to be laid, then limits their speeds
-/// by braking.
+/// Makes nodes until the motion without braking takes 1.5 times the needed time. Then limits their speeds so
+/// that braking is possible.
 void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     constexpr double FARTHER = 1.5;
     stop_s_ = 0;
@@ -264,7 +268,7 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
             }
             has_speed = node.v > 0;
             if (!has_speed) {
-                break;  // no cells: the motion stops before
+                break;  // no cells: the motion stops before this node
             }
             apply_caps(run, node, spans[k].length);
             if (node.cap_s > NOWHERE && k + 1 < spans.size()) {
@@ -280,7 +284,7 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
         }
     }
     if (nodes_.size() == 2) {
-        // A start and a stop have a place between them that moves.
+        // Between a start and a stop, one more node with a speed is needed.
         const Node &first = nodes_.front(), &last = nodes_.back();
         const double way = 0.5 * (last.s - first.s), s = first.s + way;
         Node node = node_at(run, span_at(spans, s), first.s, s);
@@ -299,12 +303,12 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     }
 }
 
-/// Time of a cell at each node: a part of the times in which the motion or the curve changes. It grows and
-/// falls slowly.
+/// Sets the time of a cell at each node: a fraction of the times in which the motion or the curve changes. It
+/// changes slowly from node to node.
 void RoughProfile::size_cells(const Run &run, const Stretch &stretch) {
     const double most_s = run.joint_curve == nullptr ? MOST_CELL_S : MOST_JOINT_CELL_S;
     for (Node &n : nodes_) {
-        // The part of the acceleration that the curve takes.
+        // The fraction of an acceleration limit that the curvature uses.
         const double part = n.v * n.v / (n.curve_v * n.curve_v);
         n.cell_s = std::clamp(
             std::min({n.ramp_s / CELLS_PER_RAMP, n.velocity_s, n.way / std::max(n.v * part, 1e-300)}),
@@ -327,14 +331,15 @@ void RoughProfile::size_cells(const Run &run, const Stretch &stretch) {
     }
 }
 
-/// Cells from one node up to a time before the next: their time changes linearly.
+/// Number of cells from node `a` to the time `t`, which is before node `b`. The time of a cell changes
+/// linearly.
 double RoughProfile::count_between(const Node &a, const Node &b, double t) noexcept {
     const double passed = t - a.t, rise = (b.cell_s - a.cell_s) / std::max(b.t - a.t, 1e-300);
     const double x = rise * passed / a.cell_s;
     return std::abs(x) < 1e-6 ? passed / a.cell_s * (1 - 0.5 * x) : std::log1p(x) / rise;
 }
 
-/// The time up to which there are so many cells behind the node `a`.
+/// The time at which `count` cells after the node `a` end.
 double RoughProfile::time_after(const Node &a, const Node &b, double count) noexcept {
     const double rise = (b.cell_s - a.cell_s) / std::max(b.t - a.t, 1e-300);
     const double x = rise * count;
@@ -360,7 +365,7 @@ void RoughProfile::lay_knots(const Run &run, const Stretch &stretch) {
     std::size_t node = 1;
     const double most = std::min(counts_.back(), static_cast<double>(MOST_CELLS));
     const double time = is_all ? whole : std::min({whole, left, time_at(most, node)});
-    // A cell ends at each cap: at the first node there, as rounding may leave more of them.
+    // A cell ends at the first node of each cap. Because of rounding, there may be several nodes of a cap.
     double from = 0, last_cap = nodes_[0].cap_s;
     node = 1;
     for (std::size_t i = 1; i < nodes_.size() && nodes_[i].t < time; ++i) {
@@ -380,7 +385,7 @@ void RoughProfile::lay_knots(const Run &run, const Stretch &stretch) {
     }
 }
 
-/// Cells up to a time.
+/// Number of cells up to the time `t`.
 double RoughProfile::count_at(double t) const noexcept {
     const auto behind =
         std::partition_point(nodes_.begin() + 1, nodes_.end() - 1, [&](const Node &n) { return n.t < t; });
@@ -388,7 +393,7 @@ double RoughProfile::count_at(double t) const noexcept {
     return counts_[i - 1] + count_between(nodes_[i - 1], nodes_[i], std::min(t, nodes_[i].t));
 }
 
-/// The time up to which there are so many cells; `node`: one at or before the first that is behind it.
+/// The time at which `count` cells end. `node`: a node at or before this time; it is updated.
 double RoughProfile::time_at(double count, std::size_t &node) const noexcept {
     while (node + 1 < nodes_.size() && counts_[node] < count) {
         ++node;
@@ -396,8 +401,8 @@ double RoughProfile::time_at(double count, std::size_t &node) const noexcept {
     return std::min(time_after(nodes_[node - 1], nodes_[node], count - counts_[node - 1]), nodes_[node].t);
 }
 
-/// Cells of one size or one that changes slowly, between two counts; `node`: one at or before the first of
-/// them.
+/// Makes cells of constant or slowly changing time between two counts. `node`: a node at or before the first
+/// cell; it is updated.
 void RoughProfile::lay_between(double from, double to, std::size_t &node) {
     const auto cells = static_cast<std::size_t>(std::max(1.0, std::ceil(finer_ * (to - from))));
     double before = time_at(from, node);

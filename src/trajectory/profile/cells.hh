@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Cells of the timing problem along a curve, about equal in time, and their rows.
+// Divides a curve into cells of about equal time, and calculates their rows.
 #pragma once
 
 #include <vector>
@@ -10,23 +10,25 @@
 
 namespace mw::trajectory::profile {
 
-/// A rough profile of the speed, with which cells are laid.
+/// A rough profile of the speed, which determines the lengths of the cells.
 class RoughProfile {
   public:
-    /// Where a profile begins and how far it reaches.
+    /// Start and extent of a rough profile.
     struct Stretch {
         double from_s = 0;
         bool from_rest = false;
-        double start_ramp = 0;  ///< behind the start, from rest: the map is blended there
-        double window_s = 0;    ///< time of the window, without that of a stop
-        double planned_s = 0;   ///< time of what is laid already
-        double end_ramp = 0;    ///< before the end of the run: cells reach there only together with the stop
+        double start_ramp = 0;  ///< length of the start, from standstill, over which the map is blended
+        double window_s = 0;    ///< time of the window, without the time of a stop [s]
+        double planned_s = 0;   ///< time of the existing cells [s]
+        /// Length before the end of the run that only gets cells together with the stop.
+        double end_ramp = 0;
     };
-    /// End of a cell, and the time that it takes about.
+    /// End of a cell, and its approximate time.
     struct CellEnd {
         double s = 0, duration_s = 0;
     };
-    /// Ends of cells along the curve, after the start. They cover the window and a stop behind it.
+    /// Returns the ends of cells along the curve, without the start. The cells cover the window and a stop
+    /// after it.
     const std::vector<CellEnd> &lay(const Run &run, const Stretch &stretch);
     /// Length of a start or stop at s with constant jerk, up to the full acceleration or half of the speed
     /// limit.
@@ -36,14 +38,15 @@ class RoughProfile {
     static constexpr double NOWHERE = -1e300;
     struct Node {
         double s = 0, v = 0, acceleration = 0, jerk = 0, t = 0;
-        double cap_s = NOWHERE;     ///< place of the cap that is there
-        double ramp_s = 1e300;      ///< time in which the jerk limit builds up an acceleration
-        double rest_s = 0;          ///< time of a start or stop with constant jerk here
-        double curve_v = 1e300;     ///< speed at which the curve alone takes a limit of acceleration or jerk
-        double machine_v = 1e300;   ///< at the machine's limits of velocity
-        double velocity_s = 1e300;  ///< most time of a cell for the sake of these
-        double way = 1e300;         ///< on which the curve changes
-        double cell_s = 0;          ///< time of a cell
+        double cap_s = NOWHERE;  ///< s of the cap at this node
+        double ramp_s = 1e300;   ///< time A/J, in which the jerk limit builds up the maximum acceleration [s]
+        double rest_s = 0;       ///< time of a start or stop with constant jerk [s]
+        double curve_v = 1e300;  ///< speed at which the curve alone uses an acceleration or jerk limit
+        double machine_v = 1e300;   ///< speed at the velocity limits of the axes and joints
+        double velocity_s = 1e300;  ///< maximum time of a cell near these velocity limits [s]
+        /// Maximum length of a cell at full use of an acceleration limit by the curvature.
+        double way = 1e300;
+        double cell_s = 0;  ///< time of a cell [s]
     };
     static Node node_at(const Run &run, std::size_t span, double from_s, double s) noexcept;
     void lay_nodes(const Run &run, const Stretch &stretch);
@@ -61,35 +64,35 @@ class RoughProfile {
     static double time_after(const Node &a, const Node &b, double count) noexcept;
     double count_at(double t) const noexcept;
     double time_at(double count, std::size_t &node) const noexcept;
-    /// Time for which cells are to be laid: the window and a stop behind it, without what is laid already.
+    /// Time for which cells are needed: the window and a stop after it, without the existing cells [s].
     double time_left(const Stretch &stretch) const noexcept {
         return stretch.window_s + stop_s_ - stretch.planned_s;
     }
     void lay_between(double from, double to, std::size_t &node);
     std::vector<Node> nodes_;
     std::vector<CellEnd> knots_;
-    std::vector<double> counts_;  ///< of cells from the first node to each
+    std::vector<double> counts_;  ///< number of cells from the first node to each node
     bool reaches_end_ = false;
-    double finer_ = 1;   ///< by which the cells are shorter
-    double stop_s_ = 0;  ///< time of a stop from the maximum speed
+    double finer_ = 1;   ///< factor of the number of cells
+    double stop_s_ = 0;  ///< time of a stop from the maximum speed [s]
 };
 
-/// Inverse of the maximum speed along the curve that the limits of speed allow at a point.
+/// 1 / maximum speed along the curve within the speed limits at a point.
 double speed_share(const Run &run, const CurvePoint &point, std::size_t feed) noexcept;
-/// The speed at which the curve alone takes all of a limit of acceleration or jerk.
+/// The speed at which the curve alone uses an acceleration or jerk limit.
 double curve_speed(const Run &run, const CurvePoint &point) noexcept;
-/// The same of the machine's limits alone, without feed and override.
+/// The same within the velocity limits of the axes, without feed and override.
 double machine_share(const Run &run, const CurvePoint &point) noexcept;
 void make_rows(const Run &run, const RestMap &map, const double *knots, std::size_t cells, Rows &rows);
-/// Largest part of the path over which a start or a stop is blended.
+/// Maximum fraction of the path over which a start or a stop is blended.
 inline constexpr double MAX_RAMP = 0.3;
-/// The scale of the path that a creep with this coefficient belongs to.
+/// The scale of the path that corresponds to this coefficient of a creep.
 double creep_scale(const Run &run, double c) noexcept;
 /// True if the speed changes slowly enough between two coefficients for a creep.
 bool isSteady(const Run &run, double c, double next, double apart) noexcept;
-/// Adds the coefficients of cells that have none: slow enough to keep every row by far. `end_ramp`: length
-/// before the end of the run over which the map may come to be blended into a stop. False if the last one is
-/// still above the scale there.
+/// Adds the coefficients of cells that have none. The motion is so slow that it is far within every row.
+/// `end_ramp`: length before the end of the run that may later be blended into a stop. False if the last
+/// coefficient is above the scale there.
 bool creep(const Run &run, const RestMap &map, const std::vector<double> &knots, double end_ramp,
            std::vector<double> &c);
 

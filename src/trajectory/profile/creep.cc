@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Coefficients of cells that have none: a motion so slow that it keeps every limit by far.
+// Coefficients of new cells: a creep, which is so slow that it is far within every limit.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace {
 
 using curve::SPACING_GROWTH;
 
-/// The least limits of the motion along the path in any direction.
+/// Minimum limits of the motion along the path over all directions.
 Bounds least_of(const Run &run) noexcept {
     Bounds least = run.limits.xyz;
     const auto take = [&](const Bounds &b, double first) {
@@ -32,29 +32,29 @@ Bounds least_of(const Run &run) noexcept {
     return least;
 }
 
-/// Speed of a creep over that at which the path alone takes all of the jerk or of the acceleration.
+/// Speed of a creep divided by the speed at which the path alone uses the jerk or the acceleration limit.
 constexpr double SHARE = 0.15;
 
-/// The scale of the path at which it alone takes a limit at the speed v.
+/// The scale of a path that alone uses a limit at the speed v.
 double scale_of_creep(const Bounds &least, double v) noexcept {
     return std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration);
 }
 
-/// Cells behind the last one that the last coefficient may come to reach.
+/// Number of cells after the last one that the last coefficient may affect.
 constexpr std::size_t CELLS_BEHIND = 2;
-/// Parts of the scale that a stretch of a creep has at least: the slope of the speed changes over a stretch,
-/// so shorter ones would take more of the jerk.
+/// Minimum number of stretches of a creep per scale of the path. The slope of the speed changes over a
+/// stretch. Shorter stretches would use more of the jerk.
 constexpr double STRETCHES = 50;
 
-/// The scale of the path, of its map and of its speed limits as a function of the place: the least one over
-/// all places, each with what the scale grows on the way from there. Cells only sample it, so it is the same
-/// for every division into cells, and where more becomes known it only grows.
+/// The scale of the path, of its map and of its speed limits as a function of s. It is the minimum over all
+/// positions, each with the growth of the scale over the distance from there. Cells only sample it, so it
+/// does not depend on the division into cells. When more of the path is known, it only grows.
 class Scales {
   public:
     Scales(const Run &run, const Bounds &least)
         : run_(run), least_(least), feeds_(run.has_stop ? run.feed_at(run.end_s) + 1 : run.feeds->size()) {}
 
-    /// The scale that a cell has already.
+    /// The scale of an existing cell.
     struct Known {
         std::size_t cell = 0;
         double scale = 1e300, speed = 1e300;
@@ -85,15 +85,15 @@ class Scales {
     }
 
   private:
-    /// A move without speed is not driven: the motion stops before.
+    /// The maximum speed of a move. A move with speed 0 is not executed: the motion stops before it.
     double speed_of(const FeedLimit &feed) const noexcept {
         const double v = std::min(feed.limit_share * least_.velocity, feed.velocity);
         return v > 0 ? v : 1e300;
     }
-    /// The scale at which the jerk limit gives this speed.
+    /// The scale at which the jerk limit allows this speed.
     double scale_of_speed(double v) const noexcept { return std::sqrt(v * v * v / least_.jerk); }
 
-    /// The least scale of all that lies in each cell: a short span or move may lie between the places where
+    /// Calculates the minimum scale in each cell. It includes short spans and moves between the points where
     /// limits are checked.
     void take_cells(const RestMap &map, double end_ramp) {
         const auto &spans = *run_.spans;
@@ -120,7 +120,7 @@ class Scales {
         look_ahead(s, span, feed);
     }
 
-    /// Reduces the scale of the last cell, which ends at s, for smaller scales behind it.
+    /// Reduces the scale of the last cell, which ends at s, because of smaller scales after it.
     void look_ahead(double s, std::size_t span, std::size_t feed) {
         double &last = cells_.back();
         const auto &spans = *run_.spans;
@@ -148,7 +148,7 @@ class Scales {
         });
     }
 
-    /// The scale at the ends of the cells.
+    /// Calculates the scale at the ends of the cells.
     void spread() {
         at_.assign(knots_.size(), 1e300);
         for (std::size_t k = 0; k < cells_.size(); ++k) {
@@ -162,21 +162,22 @@ class Scales {
 
     const Run &run_;
     const Bounds &least_;
-    std::size_t feeds_;  ///< those that are driven: what is behind a stop does not count
+    std::size_t feeds_;  ///< number of the feeds before the stop
     std::vector<double> knots_, cells_, at_;
     JointSpeeds joint_speeds_;
 };
 
-/// A creep from a place on: a spline on stretches of cells, whose coefficients belong to the least scale of
-/// the stretches around them. The cells are parts of it, so the motion does not depend on how fine they are.
+/// A creep from a position on: a spline on stretches of cells. Each coefficient corresponds to the minimum
+/// scale of the stretches around it. Cells are parts of stretches, so the motion does not depend on their
+/// lengths.
 class CreepSpline {
   public:
     CreepSpline(const std::vector<double> &knots, const Scales &scales, const Bounds &least)
         : knots_(knots), scales_(scales), least_(least) {}
 
-    /// With the speed that it has at a knot already, if there is one. False if the end is still above the
-    /// scale there.
-    /// `fall`: the largest slope at which the scale falls, as lowered limits and longer cells need it.
+    /// Calculates the coefficients. `start`: state at the knot `from` if the motion exists there. `fall`:
+    /// maximum slope at which the scale falls, as lowered limits and longer cells need it. False if the end
+    /// is above the scale there.
     bool lay(std::size_t from, const LawState *start, double fall) {
         cut(from);
         const double h = length(0);
@@ -204,7 +205,7 @@ class CreepSpline {
         }
         return is_reached;
     }
-    /// The coefficient of a cell between two places in stretch k, or beside it.
+    /// The coefficient of a cell from x to y in stretch k or beside it.
     double coefficient(std::size_t k, double x, double y) const noexcept {
         const double a = slope(k), w = (slope(k + 1) - a) / length(k);
         const double before = length(k > 0 ? k - 1 : 0), h = length(k), p = knots_[ends_[k]];
@@ -212,11 +213,11 @@ class CreepSpline {
         return b + a * (x - p + y - p) + w * (x - p) * (y - p);
     }
     std::size_t stretches() const noexcept { return ends_.size() - 1; }
-    /// The cell at which a stretch ends.
+    /// Index of the knot at which a stretch ends.
     std::size_t end_of(std::size_t k) const noexcept { return ends_[k + 1]; }
 
   private:
-    /// Stretches of whole cells.
+    /// Divides the cells into stretches.
     void cut(std::size_t from) {
         const std::size_t last = knots_.size() - 1;
         ends_.assign(1, from);
@@ -226,7 +227,7 @@ class CreepSpline {
             while (end < last && knots_[end] - knots_[k] < least) {
                 ++end;
             }
-            // What is left is a stretch, too, or belongs to this one.
+            // The rest is a stretch, or belongs to this one.
             k = knots_[last] - knots_[end] < least ? last : end;
             ends_.push_back(k);
         }
@@ -238,7 +239,7 @@ class CreepSpline {
     double slope(std::size_t k) const noexcept {
         return (c_[k + 1] - c_[k]) / (length(k > 0 ? k - 1 : 0) + length(k));
     }
-    /// The middle of the stretch that coefficient k belongs to.
+    /// The middle of the stretch of coefficient k.
     double middle(std::size_t k) const noexcept {
         const std::size_t in = std::clamp<std::size_t>(k, 1, stretches()) - 1;
         return 0.5 * (knots_[ends_[in]] + knots_[ends_[in + 1]]);
@@ -247,12 +248,12 @@ class CreepSpline {
     const std::vector<double> &knots_;
     const Scales &scales_;
     const Bounds &least_;
-    std::vector<std::size_t> ends_;  ///< knots
+    std::vector<std::size_t> ends_;  ///< indices of knots
     std::vector<double> c_;
 };
 
-/// The slope at which a creep may fall. Where the speed of joints changes by a factor over the length of a
-/// part so does the creep; the scale is the power 3/2 of the speed.
+/// Maximum slope of a falling scale. If the speed of joints changes by a factor over the length of a part, so
+/// does the creep. The scale is proportional to the power 3/2 of the speed.
 double fall_of(const Run &run, double s, double scale) noexcept {
     constexpr std::size_t PARTS_AHEAD = 3;
     double fall = 2 * SPACING_GROWTH;
@@ -307,7 +308,7 @@ bool creep(const Run &run, const RestMap &map, const std::vector<double> &knots,
             c.push_back(spline.coefficient(k, knots[cell], knots[cell + 1]));
         }
     }
-    // The last one belongs to a cell of the same length behind the end.
+    // The last coefficient belongs to a cell of the same length after the end.
     c.push_back(2 * spline.coefficient(spline.stretches() - 1, knots[cells], knots[cells]) - c[cells]);
     return is_reached;
 }

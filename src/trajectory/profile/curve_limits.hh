@@ -15,11 +15,11 @@ struct Bounds {
 };
 struct CurveLimits {
     std::array<Bounds, geometry::AXIS_COUNT> axes;
-    Bounds xyz;            ///< of the norm over X Y Z
+    Bounds xyz;            ///< limits of the norm over X Y Z
     bool has_jerk = true;  ///< the machine has jerk limits
 };
 
-/// Axes, the norm over X Y Z and joints, in this order.
+/// Order: axes, the norm over X Y Z, joints.
 inline constexpr std::size_t JOINTS_AT = LIMITED_COUNT;
 using PerBounds = std::array<double, JOINTS_AT + MAX_JOINTS>;
 
@@ -30,9 +30,9 @@ inline Bounds bounds_of(const JointLimits &joints, std::size_t j) noexcept {
     return {joints.velocity[j], joints.acceleration[j], joints.jerk[j]};
 }
 
-/// The least time of a full acceleration [s]: of axes without a jerk limit, too.
+/// Minimum time A/J of a coordinate [s]. It applies also to axes without a jerk limit.
 inline constexpr double LEAST_RAMP_S = 2e-3;
-/// A limit above it is none.
+/// A larger value means no limit.
 inline constexpr double UNLIMITED_BOUND = 1e100;
 
 }  // namespace mw::trajectory::profile

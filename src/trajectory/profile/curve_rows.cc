@@ -15,7 +15,7 @@ double square(double x) noexcept {
     return x * x;
 }
 
-/// A point of the curve, its derivatives by the parameter.
+/// A point of the curve, with its derivatives by the parameter.
 struct ParameterPoint {
     std::array<std::array<double, geometry::AXIS_COUNT>, 3> q{};
 };
@@ -41,7 +41,7 @@ NormRow norm_row(const ParameterPoint &point, const Bounds &l, double bend) noex
             j * dot(0, 2), 9 * j * dot(1, 1), 3 * j * dot(1, 2), j * dot(2, 2), bend / l.jerk};
 }
 
-/// Coordinates that move on the spans of a stretch, as bits.
+/// Coordinates that move on the spans from `from_s` to `to_s`, one bit each.
 unsigned moving_coordinates(const std::vector<Span> &spans, double from_s, double to_s) noexcept {
     unsigned moving = 0;
     for (std::size_t k = span_at(spans, from_s); k < spans.size() && spans[k].start_s <= to_s; ++k) {
@@ -50,7 +50,7 @@ unsigned moving_coordinates(const std::vector<Span> &spans, double from_s, doubl
     return moving;
 }
 
-/// How far inside of a cell the span for its end is searched, as a part of half of the cell.
+/// Distance inside a cell at which the span of its end is searched, as a fraction of half of the cell.
 constexpr double INSIDE = 1e-3;
 
 }  // namespace
@@ -107,13 +107,13 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
         const CapRest rest = rest_of(run, from, to);
         for (std::size_t p = 0; p < PLACES; ++p) {
             const MapPoint &m = places[p];
-            // At the ends of a cell the curve on the side of the cell: derivatives may jump there.
+            // At an end of a cell, the derivatives on the side of the cell apply. They may jump there.
             const double inside = m.s + INSIDE * (0.5 * (from + to) - m.s);
             const std::size_t last_span = span;
             while (span + 1 < spans.size() && inside >= spans[span].end_s()) {
                 ++span;
             }
-            // The start of a cell is the end of the one before it.
+            // The start of a cell is the end of the previous one.
             if (p > 0 || k == 0 || span != last_span) {
                 c = curve::point_at(spans[span], m.s);
             }
@@ -136,7 +136,7 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
                 rows.set_norm(p, norm_row(point, left_of(xyz, rest, XYZ_NORM),
                                           rest.bend[XYZ_NORM] * m.first * m.first));
             }
-            // All moves from the place before to that behind, in the cell.
+            // Includes all moves between the previous and the next point, within the cell.
             const auto move_to = [&](std::size_t move, std::size_t place) {
                 const double s = places[place].s;
                 while (move + 1 < run.feeds->size() && s > (*run.feeds)[move].end_s) {

@@ -9,16 +9,17 @@
 
 namespace mw::trajectory::profile {
 
-/// Cells are no faster than the speeds of the parts of the joints, which change by a factor over the length
-/// of a part: a joint near a singular pose takes far more jerk than the axes at the same speed.
+/// Maximum speed of a creep in each cell, from the speeds of the parts of the joints. It changes by at most a
+/// factor over the length of a part. Near a singular pose, a joint has far more jerk than the axes at the
+/// same speed.
 class JointSpeeds {
   public:
-    /// The speed that a cell has already.
+    /// The speed of an existing cell.
     struct Known {
         std::size_t cell = 0;
         double speed = 1e300;
     };
-    /// One speed for each cell; the parts behind the last one count, too.
+    /// Returns one speed for each cell. Parts after the last cell are taken into account.
     const std::vector<double> &find(const curve::JointCurve &joints, const RestMap &map,
                                     const std::vector<double> &knots, const Known &known);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Some doubles that are computed together. The same operations in the same order on every processor: the same
-// bits.
+// Vectors of doubles that are calculated together. All processors use the same operations in the same order,
+// so the results are bit-identical.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace mw::trajectory::profile {
 
-/// Cells that are computed together.
+/// Number of cells that are calculated together.
 inline constexpr std::size_t LANES = 4;
 using Lanes = double __attribute__((vector_size(LANES * sizeof(double)), aligned(LANES * sizeof(double))));
 
@@ -35,7 +35,7 @@ using Lanes = double __attribute__((vector_size(LANES * sizeof(double)), aligned
     return x > y ? x : y;
 }
 
-/// 1 for the elements that exist, 0 for those that fill the last lanes.
+/// 1 for existing elements, 0 for the padding of the last vector.
 [[gnu::always_inline]] inline Lanes real_lanes(std::size_t first, std::size_t count) noexcept {
     Lanes real{};
     for (std::size_t i = 0; i < LANES; ++i) {

@@ -8,14 +8,14 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Parts of the limits that are planned with: a limit is kept at three places of a cell, and nearly so
+/// Fractions of the limits used for planning. Limits are kept at three points of a cell, and nearly kept
 /// between them.
 constexpr double VELOCITY_SHARE = 0.999, ACCELERATION_SHARE = 0.998, JERK_SHARE = 0.98;
-/// Parts of the limits by which rows are raised where a start reaches them.
+/// Fractions of the limits by which rows are raised where the start motion reaches them.
 constexpr double ROOM = 5e-7, LEAST_ROOM = 1e-9;
 
-/// Where the plan before was the fastest one most of it stays so: first this part of its end is solved, with
-/// barriers between these, then all with the last one.
+/// If the previous plan was the fastest one, most of it remains the fastest. First the last fraction TAIL of
+/// it is solved, with barriers from WARM_MU to WARM_LAST_MU, then all cells with the last barrier.
 constexpr double TAIL = 0.3, WARM_MU = 2.5e-2, WARM_LAST_MU = 5e-3;
 constexpr int WARM_STEPS = 5;
 
@@ -28,7 +28,7 @@ void Profile::begin(double s) noexcept {
     steps_ = rejected_ = 0;
 }
 
-/// Nothing is planned, at rest at the start.
+/// Removes the plan. The motion is stopped at the start.
 void Profile::restart() noexcept {
     plan_ = SpeedPlan();
     forget_slowest();
@@ -65,7 +65,7 @@ void Profile::take_limits(const Run &run) {
 
 void Profile::lay_cells(std::size_t fixed) {
     const Run &run = run_;
-    // The creep at the end takes longer than the time for which its cells were laid.
+    // The creep at the end takes longer than the time for which its cells were made.
     double planned = 0;
     for (std::size_t k = fixed; k < std::min(plan_.laid(), plan_.time_cells.size()); ++k) {
         planned += std::min(plan_.time_cells[k].duration, plan_.laid_s[k]);
@@ -76,9 +76,9 @@ void Profile::lay_cells(std::size_t fixed) {
     const bool is_first = plan_.knots.empty();
     const double from = planned_s();
     if (!(run.end_s > from)) {
-        return;  // nothing ahead is drivable: the joints may have no position there
+        return;  // the joints cannot reach the path ahead
     }
-    // The creep that was laid before counts on the ramp before the end as long as the curve ends there.
+    // The existing creep takes the ramp before the end into account as long as the curve ends there.
     if (run.end_s != plan_.end_s) {
         plan_.end_s = run.end_s;
         plan_.end_ramp = std::min(RoughProfile::ramp_at(run, run.end_s), MAX_RAMP * (run.end_s - from));
@@ -102,7 +102,8 @@ void Profile::lay_cells(std::size_t fixed) {
     }
     const std::size_t old = plan_.laid();
     for (const auto &[s, duration_s] : ends) {
-        // A stop at the end of what is known must still be possible, and what follows must not lower limits.
+        // A stop at the end of the known curve must remain possible, and the path after it must not lower
+        // limits.
         if (!is_end && s > run.end_s - std::max(ramp, run.has_stop ? 0.0 : reach_)) {
             break;
         }
@@ -128,7 +129,7 @@ void Profile::lay_cells(std::size_t fixed) {
     plan_.eased.resize(plan_.laid());
 }
 
-/// Rows of `n` cells behind the fixed ones, and the plan as their first coefficients.
+/// Makes the rows of `n` cells after the fixed ones. The plan gives the first coefficients.
 void Profile::prepare(std::size_t fixed, std::size_t n) {
     make_rows(run_, plan_.map, &plan_.knots[fixed], n, rows_);
     const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
@@ -137,8 +138,8 @@ void Profile::prepare(std::size_t fixed, std::size_t n) {
     std::copy_n(plan_.c.begin() + static_cast<long>(fixed), n + 2, law_.coefficients().begin());
 }
 
-/// Raises rows by no more than rounding, where the present coefficients reach them: the steps need room.
-/// Returns the largest row before.
+/// Raises rows that the current coefficients reach, at most by rounding, because the solver needs slack.
+/// Returns the maximum row before.
 double Profile::make_room() {
     double worst = 0;
     for (std::size_t k = 0; k < rows_.cells(); ++k) {
@@ -155,7 +156,7 @@ double Profile::make_room() {
     return worst;
 }
 
-/// False for a start that leaves a limit: it is not driven.
+/// False for a start motion that exceeds a limit. It must not be executed.
 bool Profile::isStart(double worst) noexcept {
     if (worst > 1 + ROUNDING) {
         worst_rejected_ = std::max(worst_rejected_, worst);
@@ -165,7 +166,7 @@ bool Profile::isStart(double worst) noexcept {
     return true;
 }
 
-/// The plan that was kept stays. Returns false.
+/// Restores the previous plan. Returns false.
 bool Profile::restore() noexcept {
     std::swap(plan_, kept_);
     ++rejected_;
@@ -182,7 +183,7 @@ bool Profile::plan(const Run &run, std::size_t fixed) {
     return extend(run, fixed) || restore();
 }
 
-/// False if the plan from which this one starts leaves a limit.
+/// False if the motion from which the plan starts exceeds a limit.
 bool Profile::extend(const Run &run, std::size_t fixed) {
     plan_.ends_early = false;
     take_limits(run);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The timing of a curve from stop to stop, planned in windows while the curve still grows.
+// The timing of a curve from stop to stop. It is planned in windows while the curve grows.
 //
-// A window begins with the state at the end of the cells that stay and ends in a creep. The last plan,
-// followed by a creep over what is new, keeps every limit: each plan starts from it, so a plan that is late
-// or stopped early can be driven.
+// A window begins with the state at the end of the cells that remain, and ends in a creep. The last plan,
+// followed by a creep over new cells, is within every limit. Each plan starts from this motion, so even a
+// plan that is late or ended early is valid.
 #pragma once
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 namespace mw::trajectory::profile {
 
 struct ProfileSettings {
-    double window_s = 0.5;   ///< planned at once, and the time of a stop behind it
-    double period_s = 1e-3;  ///< of the servo thread: limits hold for samples so far apart
+    double window_s = 0.5;   ///< time of a window, without the stop after it [s]
+    double period_s = 1e-3;  ///< servo period [s]: limits hold for samples at this distance
 };
 
-/// Planner thread. Within velocity, acceleration and jerk.
+/// Profile within velocity, acceleration and jerk. Use it in the planner thread only.
 class Profile final : public PathTiming {
   public:
     explicit Profile(const ProfileSettings &settings) : settings_(settings) {}
@@ -29,8 +29,8 @@ class Profile final : public PathTiming {
     void begin(double s) noexcept override;
     bool plan(const Run &run, std::size_t fixed) override;
     bool replan(const Run &run, std::size_t fixed) override;
-    /// The slowest motion from a place, behind the plan up to there, is where that from an earlier place
-    /// begins to be looked for, and direct stops are looked for once.
+    /// The search for the slowest motion from an earlier cell starts with that from a later cell. Direct
+    /// stops are searched only once.
     void begin_stops(const Run &run) override;
     Stop next_stop(const Run &run, std::size_t fixed, StopEffort effort) override;
     double stops_apart_s(double stop_s) const noexcept override { return std::max(1e-2, 0.12 * stop_s); }
@@ -46,15 +46,15 @@ class Profile final : public PathTiming {
     void drop(std::size_t count) override;
     double drivable_s() const noexcept override { return joint_curve_.drivable_s(); }
 
-    /// Largest row over its limit of the plan that the last one started from.
+    /// Maximum row of the start motion of the last plan, divided by its limit.
     double worst_start() const noexcept { return worst_start_; }
-    /// Plans that were rejected, and the largest row over its limit that they would have started from.
+    /// Number of rejected plans, and maximum row of their start motions, divided by its limit.
     int rejected() const noexcept { return rejected_; }
     double worst_rejected() const noexcept { return worst_rejected_; }
     int steps() const noexcept { return steps_; }
 
   private:
-    /// Part of a limit by which rounding may leave it.
+    /// Fraction of a limit by which rounding may exceed it.
     static constexpr double ROUNDING = 1e-6;
     void take_limits(const Run &run);
     void lay_cells(std::size_t fixed);
@@ -82,25 +82,25 @@ class Profile final : public PathTiming {
 
     ProfileSettings settings_;
     RoughProfile rough_;
-    Run run_;  ///< its limits with the margins
+    Run run_;  ///< its limits include the margins
     curve::JointCurve joint_curve_;
     Rows rows_;
     TimeLaw law_;
-    SpeedPlan plan_, kept_;  ///< what is planned, and the plan before while another one is made
+    SpeedPlan plan_, kept_;  ///< the plan, and the previous plan while a new one is made
     std::vector<double> creep_, floors_, part_knots_;
     struct {
         std::vector<double> knots, c;
     } split_;
-    /// The slowest motion of the present plan that was found last: its coefficients from a cell on, up to
-    /// the end of another. No cells: none.
+    /// The last slowest motion of the current plan: its coefficients from cell `from` to cell `end`. Empty:
+    /// none.
     struct {
         std::vector<double> c;
         std::size_t from = 0, end = 0;
     } slowest_;
-    KnownStops known_stops_;  ///< of the plan, since begin_stops()
+    KnownStops known_stops_;  ///< stops of the plan since begin_stops()
     double start_s_ = 0;
-    double reach_ = 0;  ///< before the end of what is known: a seam there may lower limits so far
-    // A direct stop before the end of the cells, from the start of one of them on.
+    double reach_ = 0;  ///< distance before the end of the known curve within which a seam may lower limits
+    // A direct stop before the end of the cells, from the start of cell `ending_at_` on.
     std::size_t ending_at_ = 0, ending_cells_ = 0;
     double ending_s_ = 0;
     std::vector<TimeCell> ending_;

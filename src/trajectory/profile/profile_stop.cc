@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stops in the middle of a plan, and plans after limits were lowered.
+// Stops from a moving plan, and plans after limits were lowered.
 #include <algorithm>
 #include <cmath>
 
@@ -10,18 +10,21 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Time between the places where a stop from the least speed or at a place begins [s].
+/// Time between the starts of direct stops that are tried [s].
 constexpr double STOPS_APART_S = 2e-3;
-/// The same for PROMPT stops, as a part of the time before: the slowest motion brakes as fast as it can.
+/// The same for PROMPT stops, as a fraction of the time before them. The slowest motion already brakes as
+/// fast as possible.
 constexpr double STOPS_APART = 0.25;
-/// A stop of a plan may take so many times the least time, and so much more.
+/// A stop of a plan may take PROMPT_SHARE times the minimum time plus PROMPT_S [s].
 constexpr double PROMPT_SHARE = 1.1, PROMPT_S = 2e-3;
-/// Parts of the plan and of the creep: a floor is below the plan, and what is near the floor creeps.
+/// BELOW_PLAN: maximum of a floor divided by the coefficient of the plan. NEAR_CREEP: a coefficient up to
+/// this multiple of the creep counts as a creep.
 constexpr double BELOW_PLAN = 0.9, NEAR_CREEP = 1.02;
-/// Parts of a cell at most, and their least time as planned [s]: a cell may be split again and again.
+/// Maximum number of parts of a cell, and their minimum planned time [s]. A cell may be divided several
+/// times.
 constexpr double MOST_PARTS = 8, LEAST_PART_S = 2.5e-4;
-/// The last barrier: part of the coefficients of the start below which speed is not reduced. A plan has many
-/// PROMPT stops; the first barrier is that from a motion that is slow already.
+/// Last barrier: fraction of the coefficients of the start below which the speed is not reduced. A plan has
+/// many PROMPT stops. Their first barrier is that for a start from a slow motion.
 constexpr SolveSettings SLOWEST_SOLVE{.objective = Objective::SPEED, .last_mu = 4e-3};
 constexpr SolveSettings PROMPT_SOLVE{
     .objective = Objective::SPEED, .last_mu = 2e-2, .factor = 0.1, .steps_per_mu = 8};
@@ -53,7 +56,7 @@ Stop Profile::next_stop(const Run &run, std::size_t fixed, StopEffort effort) {
     }
     if (effort == StopEffort::SOONEST) {
         stop_sooner(run, fixed, 0, out);
-        forget_slowest();  // it may be asked for while the plan is being changed
+        forget_slowest();  // the next call may follow a change of the plan
     } else if (effort == StopEffort::PROMPT) {
         const double enough_s = PROMPT_SHARE * search.least_s(course) + PROMPT_S;
         if (time_of(out, fixed) > enough_s) {
@@ -63,7 +66,7 @@ Stop Profile::next_stop(const Run &run, std::size_t fixed, StopEffort effort) {
     return out;
 }
 
-/// From the start of cell `fixed` to the end of the stop. A plan that is not complete ends in none.
+/// Time from the start of cell `fixed` to the end of the stop [s]. An incomplete plan has no stop at its end.
 double Profile::time_of(const Stop &stop, std::size_t fixed) const {
     if (stop.cells.empty() && !isComplete()) {
         return StopSearch::ANYWHERE;
@@ -78,8 +81,8 @@ double Profile::time_of(const Stop &stop, std::size_t fixed) const {
     return time_s;
 }
 
-/// From the motion with the least speed, where that is sooner. `enough_s`: a stop in less time is taken at
-/// once; 0: the soonest one.
+/// Searches a stop from the slowest motion and replaces `out` if it is sooner. `enough_s`: a stop in less
+/// time is accepted at once; 0: the soonest one.
 void Profile::stop_sooner(const Run &run, std::size_t fixed, double enough_s, Stop &out) {
     const Course plan = plan_.course_from(fixed, &plan_.c[fixed]);
     const StopSearch search(run, run_, plan_);
@@ -124,9 +127,9 @@ void Profile::stop_sooner(const Run &run, std::size_t fixed, double enough_s, St
     }
 }
 
-/// The speed in `n` cells behind the fixed ones as small as the limits of acceleration and jerk allow, down
-/// to `floors` (none: 0). Without floors it begins with the slowest motion behind a place and the plan before
-/// it, if that is known: it keeps every row. False if the plan leaves a limit.
+/// Reduces the speed in `n` cells after the fixed ones to the minimum within the limits of acceleration and
+/// jerk, but not below `floors` (none: 0). Without floors, it starts with the known slowest motion and the
+/// plan before it, which are within every row. False if the plan exceeds a limit.
 bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<double> &floors,
                            SolveSettings settings) {
     prepare(fixed, n);
@@ -158,7 +161,7 @@ bool Profile::make_slowest(std::size_t fixed, std::size_t n, const std::vector<d
     return true;
 }
 
-/// Parts of a cell within `length` of the start in which the speed will be lower.
+/// Number of parts of a cell within `length` of the start in which the speed will be lower.
 int Profile::parts_of(const Run &run, const Course &course, std::size_t k, double length) const {
     const Motion from = plan_.motion_at(course, 0, 0), m = plan_.motion_at(course, k, 0.5);
     const std::size_t span = span_at(*run.spans, m.s);
@@ -170,8 +173,8 @@ int Profile::parts_of(const Run &run, const Course &course, std::size_t k, doubl
     return static_cast<int>(std::min(std::ceil(m.v / lowest), most));
 }
 
-/// True if the motion in a cell keeps limits of acceleration and jerk at the places of its parts, too: they
-/// may show what lies between the places of the cell.
+/// True if the motion in a cell is within the acceleration and jerk limits also at the points of its parts.
+/// They may show details between the points of the cell.
 bool Profile::keepsRows(const Course &course, std::size_t k, int parts) {
     const double from = course.knots[k], h = course.knots[k + 1] - from;
     part_knots_.clear();
@@ -190,8 +193,8 @@ bool Profile::keepsRows(const Course &course, std::size_t k, int parts) {
     return true;
 }
 
-/// Splits the first `n` cells behind the fixed ones where the speed will be lower and the parts keep every
-/// row; they are the same motion. Returns how many there are then.
+/// Divides the first `n` cells after the fixed ones if the speed will be lower there and the parts are within
+/// every row. The motion remains the same. Returns the new number of cells.
 std::size_t Profile::split(const Run &run, std::size_t fixed, std::size_t n) {
     const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
     const double length = plan_.map.at(course.knots[n]).s - plan_.map.at(course.knots[0]).s;
@@ -205,7 +208,7 @@ std::size_t Profile::split(const Run &run, std::size_t fixed, std::size_t n) {
             split_.c.push_back(course.c[k + 1]);
             continue;
         }
-        // The coefficient of a part from x to y is b + a (x + y) + w x y, with those of the start of the
+        // The coefficient of a part from x to y is b + a (x + y) + w x y, with b, a, w at the start of the
         // cell.
         const LawState start = course.state(k, 0);
         for (int i = 0; i < parts; ++i) {
@@ -224,8 +227,8 @@ std::size_t Profile::split(const Run &run, std::size_t fixed, std::size_t n) {
     return static_cast<std::size_t>(last - plan_.knots.begin()) - fixed;
 }
 
-/// The speed behind the fixed cells is reduced as soon as limits allow, then the plan ends in a creep. What
-/// is above lowered limits of the speed is allowed from now on. False if the plan leaves a limit.
+/// Reduces the speed after the fixed cells as soon as the limits allow. The plan then ends in a creep. The
+/// motion may exceed lowered speed limits from now on. False if the plan exceeds a limit.
 bool Profile::slow_down(const Run &run, std::size_t fixed) {
     std::size_t n = StopSearch(run, run_, plan_).cells_of_stop(plan_.course_from(fixed, &plan_.c[fixed]));
     n = split(run, fixed, n);
@@ -254,7 +257,7 @@ bool Profile::slow_down(const Run &run, std::size_t fixed) {
             ++kept;
         }
         kept = std::min(kept, n);
-        // A ramp before the end stays.
+        // A ramp before the end remains.
         kept = plan_.has_end && plan_.knots[fixed + kept] > plan_.map.end_ramp() ? n : kept;
         if (kept < n || n == plan_.laid() - fixed) {
             break;
@@ -270,7 +273,7 @@ bool Profile::slow_down(const Run &run, std::size_t fixed) {
     return true;
 }
 
-/// True if the run ends so near that what is planned does not count on it.
+/// True if the end of the run is so near that the plan cannot stop there.
 bool Profile::endsNear(const Run &run) const noexcept {
     if (!run.has_stop || run.end_s >= plan_.end_s) {
         return false;
@@ -281,7 +284,7 @@ bool Profile::endsNear(const Run &run) const noexcept {
                             RestMap::scale_of(ramp) + curve::SPACING_GROWTH * (left - ramp);
 }
 
-/// Ends the plan with a direct stop at the end of the run. False if none keeps the limits.
+/// Ends the plan with a direct stop at the end of the run. False if no direct stop is within the limits.
 bool Profile::end_early(const Run &run, std::size_t fixed) {
     take_limits(run);
     const Course course = plan_.course_from(fixed, &plan_.c[fixed]);
@@ -316,7 +319,7 @@ bool Profile::replan(const Run &run, std::size_t fixed) {
     return change(run, fixed) || restore();
 }
 
-/// False if a plan that this begins with leaves a limit.
+/// False if a motion from which this starts exceeds a limit.
 bool Profile::change(const Run &run, std::size_t fixed) {
     plan_.ends_early = false;
     take_limits(run);
@@ -345,7 +348,7 @@ bool Profile::change(const Run &run, std::size_t fixed) {
     if (!is_near || end_early(run, fixed)) {
         return true;
     }
-    // From the motion with the least speed and its creep.
+    // Try again from the slowest motion with its creep.
     take_limits(whole);
     if (!slow_down(whole, fixed)) {
         return false;
@@ -355,7 +358,7 @@ bool Profile::change(const Run &run, std::size_t fixed) {
     prepare(fixed, plan_.laid() - fixed);
     make_time_cells(fixed);
     if (!end_early(run, fixed)) {
-        // The soonest stop, before the end of the run.
+        // Use the soonest stop, before the end of the run.
         plan_.ends_early = true;
         ending_at_ = fixed;
         ending_ = soonest.cells;

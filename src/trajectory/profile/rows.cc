@@ -8,7 +8,7 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Part by which a plan that is at the machine's limit of the squared speed may leave it.
+/// Fraction by which a plan at the velocity limits may exceed the squared speed limit.
 constexpr double ROUNDING = 1e-5;
 
 }  // namespace
@@ -87,7 +87,7 @@ double Rows::worst(std::size_t cell, std::size_t place, const LawState &s) const
     return worst;
 }
 
-// The solver's unknowns in a cell are b, h a and h^2 w: the rows are scaled by 1, 1/h and 1/h^2.
+// The unknowns of the solver in a cell are b, h a and h^2 w, so the rows are scaled by 1, 1/h and 1/h^2.
 void Rows::set(std::size_t place, std::size_t coordinate, const Row &row) noexcept {
     const std::size_t cell = cells_ - 1;
     const std::size_t lane = cell % LANES;

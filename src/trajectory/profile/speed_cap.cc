@@ -8,14 +8,14 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Half of the time over which a quadratic B-spline of three periods is above 0, over the period.
+/// Half of the time over which a quadratic B-spline of three periods is positive, divided by the period.
 constexpr double REACH = 1.5;
-/// A stop takes the place of a speed that a start with full jerk has after so many periods: to pass saves
-/// less than twice their time.
+/// The motion stops at a seam if its cap is lower than the speed of a start with full jerk after this number
+/// of periods. Passing it would save less than twice this time.
 constexpr double STOP_PERIODS = 10;
-/// A jump that takes less than this part of a limit is ignored: the margins of the profile cover it.
+/// A jump that uses less than this fraction of a limit is ignored. The margins of the profile cover it.
 constexpr double NEGLIGIBLE = 1e-3;
-/// A derivative below it is 0.
+/// A smaller derivative counts as 0.
 constexpr double LEAST = 1e-30;
 
 PerLimited sizes_of(const Pose &p) noexcept {
@@ -27,13 +27,14 @@ PerLimited sizes_of(const Pose &p) noexcept {
     return out;
 }
 
-/// Without jerk limits: that of a full acceleration within one period.
+/// Jerk limit of a coordinate. Without jerk limits, the jerk that reaches full acceleration within one
+/// period.
 double jerk_of(const Bounds &b, double period_s, bool has_jerk) noexcept {
     return has_jerk ? std::min(b.jerk, b.acceleration / std::max(LEAST_RAMP_S, 2 * period_s))
                     : b.acceleration / period_s;
 }
 
-/// Lowers limits along the path to those of something that has this derivative.
+/// Lowers limits along the path to those of a coordinate with the derivative `first`.
 void lower(Bounds &along, const Bounds &b, double first, double period_s, bool has_jerk) noexcept {
     const double q1 = std::max(first, LEAST);
     along.velocity = std::min(along.velocity, b.velocity / q1);
@@ -56,7 +57,7 @@ double reach_of(double v, double acceleration, double period_s) noexcept {
     return near_s * (v + 0.5 * near_s * acceleration);
 }
 
-/// Takes one more limit and the jumps of what it limits.
+/// Applies the limits of one more coordinate, with the jumps of its derivatives.
 void take(SpeedCap &cap, std::size_t i, const Bounds &b, double turn, double bend) noexcept {
     const double jerk = jerk_of(b, cap.period_s, cap.has_jerk);
     cap.turn[i] = turn / (cap.period_s * cap.period_s);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speed at places where the derivatives of an exact path jump.
+// Maximum speed at points where the derivatives of an exact path jump.
 //
-// The servo thread drives samples, a period T apart, and limits hold for their differences. The second
-// difference over T^2 weighs the acceleration by a triangle, whose peak is 1/T; the third one over T^3 weighs
-// the jerk by the quadratic B-spline over three periods, whose peak is 3/(4 T) and whose slope is at most
-// 1/T^2. So at the speed v
-//   a jump dq'' of the curvature makes a jerk of at most 3/4 v^2 |dq''|/T,
-//   a jump dq' of the tangent makes a jerk of at most v |dq'|/T^2 and an acceleration of at most v |dq'|/T.
-// The smooth part of the motion takes the rest of the limits as long as the weights reach the jump.
+// The servo thread commands samples, a period T apart, and limits hold for their differences. The second
+// difference divided by T^2 weights the acceleration with a triangle, whose peak is 1/T. The third difference
+// divided by T^3 weights the jerk with the quadratic B-spline over three periods, whose peak is 3/(4 T) and
+// whose slope is at most 1/T^2. So at the speed v, a jump dq'' of the curvature causes a jerk of at most
+// 3/4 v^2 |dq''|/T. A jump dq' of the tangent causes a jerk of at most v |dq'|/T^2 and an acceleration of at most
+// v |dq'|/T. The smooth part of the motion uses the rest of the limits as long as the weights include the
+// jump.
 #pragma once
 
 #include <vector>
@@ -22,26 +22,28 @@ struct SpeedCap {
     double s = 0;
     double v = 1e300;      ///< maximum speed
     bool is_stop = false;  ///< a stop is needed: the run ends here
-    double reach = 0;      ///< length on both sides within which the smooth part takes the rest of the limits
+    /// Distance on both sides within which the smooth part has only the rest of the limits.
+    double reach = 0;
     double period_s = 1e-3;
-    bool has_jerk = true;  ///< of the limits
-    PerBounds turn{};      ///< jerk over v: |dq'|/T^2
-    PerBounds bend{};      ///< jerk over v^2: 3/4 |dq''|/T
+    bool has_jerk = true;  ///< the machine has jerk limits
+    PerBounds turn{};      ///< jerk divided by v: |dq'|/T^2
+    PerBounds bend{};      ///< jerk divided by v^2: 3/4 |dq''|/T
 };
 
-/// Part of the jerk limit that a jump of the tangent may take.
+/// Fraction of the jerk limit that a jump of the tangent may use.
 inline constexpr double TURN_SHARE = 0.5;
 
-/// The cap at a seam for samples `period_s` apart.
+/// The cap at a seam for samples at a distance of `period_s` [s].
 SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, double period_s) noexcept;
-/// The same on a machine whose joints are not axes; `map` may be null.
+/// The same for a machine whose joints are not axes; `map` may be null.
 SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, const JointMap *map,
                 const JointLimits &joints, double period_s) noexcept;
 
-/// Bound of the reach of a cap at the end of a curve, for every curve that may follow.
+/// Bound of the reach of a cap at the end of a curve, whatever curve follows.
 double largest_reach(const curve::CurvePoint &end, const CurveLimits &limits, double period_s) noexcept;
 
-/// False for rounding: at every speed that the axes can have, the jumps take a negligible part of the limits.
+/// False if the jumps are within rounding: they use a negligible part of the limits at every speed of the
+/// axes.
 bool isNeeded(const SpeedCap &cap, const CurveLimits &limits) noexcept;
 bool isNeeded(const SpeedCap &cap, const CurveLimits &limits, const JointLimits &joints) noexcept;
 

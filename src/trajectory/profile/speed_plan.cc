@@ -35,8 +35,8 @@ Motion SpeedPlan::motion_at(const Course &course, std::size_t cell, double x) co
     return {m.s, m.first * std::sqrt(state.b), m.second * state.b + m.first * state.a};
 }
 
-/// The first one is not longer than that before it, each other one at
-/// most twice as long as that before it.
+/// The first cell is not longer than the last existing one. Each further cell is at most twice as long as the
+/// one before.
 void SpeedPlan::lay_first(double p) {
     const double from = knots.back(), h = from - knots[knots.size() - 2], length = p - from;
     double next = h, sum = h;
@@ -53,7 +53,7 @@ void SpeedPlan::lay_first(double p) {
     knots.push_back(p);
 }
 
-/// The motion stays the same.
+/// The motion does not change.
 void SpeedPlan::change_behind(double from, double to) noexcept {
     const std::size_t n = c.size() - 2;
     const double last = knots[n] - knots[n - 1];

@@ -11,8 +11,8 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Parts of the limits by which a direct stop may exceed them where they are checked: a fifth of the margins
-/// with which limits are planned.
+/// Fractions of the limits by which a direct stop may exceed them where they are checked: a fifth of the
+/// margins of the limits for planning.
 constexpr double SPARE_ACCELERATION = 4e-4, SPARE_JERK = 2e-3;
 
 struct Phase {
@@ -24,7 +24,7 @@ Motion after(const Motion &m, double jerk, double t) noexcept {
             m.a + t * jerk};
 }
 
-/// The middle and the half width of the x with |p + x q| <= limit; a width below 0: none.
+/// The middle and the half width of the range of x with |p + x q| <= limit. A width below 0: no such x.
 struct Range {
     double middle = 0, half = 0;
 };
@@ -38,7 +38,7 @@ double dot_xyz(const Pose &x, const Pose &y) noexcept {
     return x.c[0] * y.c[0] + x.c[1] * y.c[1] + x.c[2] * y.c[2];
 }
 
-/// The limits of one coordinate or joint with these derivatives by s.
+/// Derivatives of one coordinate or joint by s.
 struct Slopes {
     double first = 0, second = 0, third = 0;
 };
@@ -56,7 +56,7 @@ void take(Rates &rates, const Slopes &q, const Bounds &b, const Motion &at) noex
     rates.spare_jerk = std::min(rates.spare_jerk, SPARE_JERK * b.jerk * per);
 }
 
-/// What the caps around leave of a limit at this speed.
+/// The part of a limit that nearby caps leave at this speed.
 Bounds left_at(const Bounds &b, const CapRest &rest, std::size_t i, double v) noexcept {
     Bounds left = left_of(b, rest, i);
     left.jerk -= rest.bend[i] * v * v;
@@ -78,7 +78,8 @@ TimeCell cell_of(const Motion &from, const Motion &to, double duration) noexcept
 
 bool make_direct_stop(const Motion &from, const Rates &rates, DirectStop &stop) noexcept {
     const double jerk = rates.jerk;
-    const double fall = from.v + 0.5 * from.a * from.a / jerk;  // as if the acceleration began at 0
+    // Speed of an equal stop that begins with acceleration 0.
+    const double fall = from.v + 0.5 * from.a * from.a / jerk;
     const double highest = std::sqrt(jerk * fall);
     double peak = std::min(highest, std::max(rates.acceleration, -from.a));
     if (!(peak >= -from.a) || !(peak > 0)) {
@@ -98,8 +99,8 @@ bool make_direct_stop(const Motion &from, const Rates &rates, DirectStop &stop) 
 }
 
 bool make_direct_stop_at(const Motion &from, const Rates &rates, double end_s, DirectStop &stop) noexcept {
-    // The length falls with the part of the limits that is used; below the least part the motion would go
-    // back.
+    // The length of the stop decreases when it uses more of the limits. Below the lower bound the motion
+    // would reverse.
     constexpr int HALVINGS = 100;
     double low = from.a < 0 ? 0.5 * from.a * from.a / (from.v * rates.jerk) : 0.0, high = 1;
     const auto make = [&](double part) {

@@ -10,15 +10,16 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-/// Places of a direct stop at which limits are checked, and how often it is made again with what they leave.
+/// TAIL_PLACES, SPAN_PLACES: number of points of a direct stop, and of points per span, at which limits are
+/// checked. TAIL_ROUNDS: maximum number of attempts with reduced limits.
 constexpr int TAIL_PLACES = 16;
 constexpr double SPAN_PLACES = 12;
 constexpr int TAIL_ROUNDS = 4;
-/// Time between these places at most [s].
+/// Maximum time between these points [s].
 constexpr double MOST_STEP_S = 2e-3;
-/// Places that are checked for a quick stop, about: 0.2 ms.
+/// Approximate number of points that are checked for a quick stop (0.2 ms).
 constexpr std::size_t QUICK_PLACES = 400;
-/// Lengths of a direct stop on a straight line in which a stop is looked for.
+/// A stop is searched within this multiple of the length of a direct stop on a straight line.
 constexpr double LENGTHS = 1.3;
 
 bool isStraight(const Span &span) noexcept {
@@ -30,8 +31,8 @@ bool isStraight(const Span &span) noexcept {
     return true;
 }
 
-/// From a place to the end of its span nothing changes what the limits leave: the curve is straight, with one
-/// feed and no seam near.
+/// True if limits do not change from `at` to the end of the span: the curve is straight, with one feed and no
+/// seam nearby.
 bool isPlain(const Run &run, const Span &span, std::size_t feed, const Motion &at) noexcept {
     if (run.joint_curve != nullptr || !isStraight(span) || (*run.feeds)[feed].end_s < span.end_s()) {
         return false;
@@ -43,17 +44,17 @@ bool isPlain(const Run &run, const Span &span, std::size_t feed, const Motion &a
 
 namespace {
 
-/// Time to rest with these limits.
+/// Time to standstill with these limits [s].
 double stop_time(double v, double a, double acceleration, double jerk) noexcept {
-    const double fall =
-        std::max(v + 0.5 * a * std::abs(a) / jerk, 0.0);  // as if it began without acceleration
+    // Speed of an equal stop that begins with acceleration 0.
+    const double fall = std::max(v + 0.5 * a * std::abs(a) / jerk, 0.0);
     const double held = acceleration / jerk;
     return a / jerk + (fall > acceleration * held ? fall / acceleration + held : 2 * std::sqrt(fall / jerk));
 }
 
 }  // namespace
 
-/// Also reduces `least` to what limits leave.
+/// True if a direct stop is within all limits. Also reduces `least` to the remaining limits along it.
 bool StopSearch::keepsLimits(const Course &course, std::size_t cell, const DirectStop &tail, Density density,
                              Rates &least) const {
     if (!(tail.end_s <= run_.end_s)) {
@@ -66,7 +67,7 @@ bool StopSearch::keepsLimits(const Course &course, std::size_t cell, const Direc
     bool keeps = true;
     double phase_end = tail.cells[0].duration;
     std::size_t phase = 0;
-    // Where the speed is highest.
+    // The time of the maximum speed is one of the points.
     const double first_jerk = tail.jerk_at(0), first_a = tail.at(0).a;
     const double peak = first_a > 0 && first_jerk < 0 ? -first_a / first_jerk : 0.0;
     for (double t = 0, step = 0;;) {
@@ -85,7 +86,7 @@ bool StopSearch::keepsLimits(const Course &course, std::size_t cell, const Direc
         keeps = keeps && -m.a >= left.least - left.spare_acceleration &&
                 -m.a <= left.acceleration + left.spare_acceleration &&
                 std::abs(tail.jerk_at(t)) <= left.jerk + left.spare_jerk;
-        // Above the limit of the speed it may be where the plan is.
+        // The speed may exceed a speed limit if the plan is at least as fast there.
         if (std::max(speed_share(within_, point, feed), left.speed_share) * m.v > 1) {
             const double p = plan_.map.parameter_at(m.s);
             while (cell + 1 < course.cells && course.knots[cell + 1] <= p) {
@@ -161,7 +162,7 @@ std::size_t StopSearch::first(const Course &course, std::size_t fixed, KnownStop
         if (passes <= n) {
             k = (fails + passes) / 2;
         } else if (is_late && k < n) {
-            k = n;  // the creep
+            k = n;  // the creep at the end
         } else {
             k = k == n ? n + 1 : std::min(k + step, n);
             step *= 2;

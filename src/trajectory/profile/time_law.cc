@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-// Wide vectors where the processor has them, with GCC: clang, which builds for the sanitizers, does not
-// inline what such functions call. Multiplications and additions stay apart (-ffp-contract=off), so that the
-// bits are the same.
+// GCC uses wide vectors if the processor has them. Clang, which builds for the sanitizers, does not inline
+// the functions that such code calls. Multiplications and additions are not contracted (-ffp-contract=off),
+// so results are bit-identical.
 #if defined(__x86_64__) && !defined(__clang__)
 #define MW_WIDE [[gnu::target_clones("arch=x86-64-v4", "avx2", "default")]]
 #else
@@ -17,8 +17,8 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-// In a cell y = (b, h a, h a') with a and a' at its two ends; at the part x of it
-//   b(x) = y0 + (2x - x^2) y1 + x^2 y2,  h a(x) = (1 - x) y1 + x y2,  h^2 w = y2 - y1.
+// In a cell y = (b, h a, h a'), with a and a' at its two ends. At the fraction x of it
+// b(x) = y0 + (2x - x^2) y1 + x^2 y2,  h a(x) = (1 - x) y1 + x y2,  h^2 w = y2 - y1.
 constexpr double weight_1(double x) noexcept {
     return 2 * x - x * x;
 }
@@ -26,15 +26,15 @@ constexpr double weight_2(double x) noexcept {
     return x * x;
 }
 constexpr std::array<double, PLACES> SIMPSON{1.0 / 6, 4.0 / 6, 1.0 / 6};
-/// A step covers at most this part of the distance to the nearest row.
+/// A step covers at most this fraction of the distance to the nearest row.
 constexpr double KEEP = 0.9;
-/// Part of its diagonal that a pivot has at least: less is what rounding leaves where a row is all but
-/// reached.
+/// Minimum of a pivot, as a fraction of its diagonal element. A smaller pivot is a rounding error next to a
+/// row.
 constexpr double LEAST_PIVOT = 1e-9;
-/// A whole step with a decrement below this much per cell ends the steps with one mu.
+/// If a full step has a decrement below this value per cell, the steps with this mu end.
 constexpr double ENOUGH = 0.05;
 
-/// y of the cells of a block, and the weights that make it of three coefficients:
+/// y of the cells of a block, and the weights that calculate it from three coefficients:
 /// y0 = A c0 + (1 - A) c1, y1 = A (c1 - c0), y2 = B (c2 - c1).
 struct Local {
     Lanes y0, y1, y2;
@@ -48,7 +48,7 @@ struct Weights {
     return {(c1 + m.a * (c0 - c1)) * m.real, m.a * (c1 - c0) * m.real, m.b * (c2 - c1) * m.real};
 }
 
-/// b, h a and h^2 w at a place.
+/// b, h a and h^2 w at a point.
 struct State {
     Lanes b, a, w;
 };
@@ -62,7 +62,7 @@ struct Slopes {
     Lanes g0{}, g1{}, g2{}, h00{}, h01{}, h02{}, h11{}, h12{}, h22{};
 };
 
-/// One division for two inverses.
+/// Two inverses calculated with one division.
 struct Inverses {
     Lanes first, second;
 };
@@ -71,19 +71,19 @@ struct Inverses {
     return {both * y, both * x};
 }
 
-/// Weight of the barrier of a velocity row: most of a program is driven at its feed, which is to be reached
-/// more closely than the other limits.
+/// Weight of the barrier of a velocity row. Most motion is at the programmed feed, so the solution must be
+/// nearer to this limit than to others.
 constexpr double VELOCITY_WEIGHT = 0.1;
 
-/// -log(1 - b v2).
+/// Adds the barrier -log(1 - b v2).
 [[gnu::always_inline]] inline void add_velocity(const State &s, const Lanes &v2, Slopes &d) noexcept {
     const Lanes g = v2 / (1.0 - s.b * v2), weighted = VELOCITY_WEIGHT * g;
     d.g0 += weighted;
     d.h00 += weighted * g;
 }
 
-/// 1/sqrt(b) - k sqrt(b), which the jerk may take, and its slope; `of_root`: those of 1/sqrt(b). Both parts
-/// are convex, so the tangent is a safe bound.
+/// Bound of the jerk, 1/sqrt(b) - k sqrt(b), and its slope. `of_root`: those of 1/sqrt(b). Both parts are
+/// convex, so the tangent is a safe bound.
 struct JerkBound {
     Lanes value, slope;
 };
@@ -94,8 +94,8 @@ struct JerkBound {
     return {of_root.value * (1.0 - kb), of_root.slope * (1.0 + kb)};
 }
 
-/// -log(1 - u^2) with u the acceleration; -log of the slacks bound + z and bound - z with z the jerk and the
-/// tangent of its bound.
+/// Adds the barriers -log(1 - u^2), with u the acceleration, and -log of the slacks bound + z and bound - z,
+/// with z the jerk and the tangent of its bound.
 [[gnu::always_inline]] inline void add_row(const State &s, const RowLanes &r, const JerkBound &of_root,
                                            Slopes &d) noexcept {
     const auto [rb, slope] = jerk_bound(s, of_root, r.k);
@@ -120,10 +120,10 @@ struct JerkBound {
     d.h22 += second * r.j1 * r.j1;
 }
 
-/// The products of a norm's two forms with a state.
+/// The products of the two forms of a norm with a state.
 struct NormState {
-    Lanes qa, qb;      ///< of the acceleration's, by a and b
-    Lanes zw, za, zb;  ///< of the jerk's
+    Lanes qa, qb;      ///< products of the acceleration form, by a and b
+    Lanes zw, za, zb;  ///< products of the jerk form, by w, a and b
 };
 
 [[gnu::always_inline]] inline NormState norm_of(const NormLanes &n, const State &s) noexcept {
@@ -131,14 +131,14 @@ struct NormState {
             n.jwa * s.w + n.jaa * s.a + n.jab * s.b, n.jwb * s.w + n.jab * s.a + n.jbb * s.b};
 }
 
-/// (1 - k b)^2/b, which the square of the jerk may take, and minus its slope. Convex, too.
+/// Bound of the squared jerk, (1 - k b)^2/b, and minus its slope. It is convex, too.
 [[gnu::always_inline]] inline JerkBound norm_bound(const State &s, const Lanes &per_b,
                                                    const Lanes &k) noexcept {
     const Lanes left = 1.0 - k * s.b;
     return {per_b * left * left, per_b * per_b - k * k};
 }
 
-/// -log(1 - acceleration^2) and -log(bound - jerk^2), with the tangent of the bound.
+/// Adds the barriers -log(1 - acceleration^2) and -log(bound - jerk^2), with the tangent of the bound.
 [[gnu::always_inline]] inline void add_norm(const State &s, const NormLanes &n, const Lanes &per_b,
                                             Slopes &d) noexcept {
     const NormState m = norm_of(n, s);
@@ -157,7 +157,8 @@ struct NormState {
     d.h22 += 2.0 * n.jww * r + ew * ew * r2;
 }
 
-/// (b, a, w) = M y with the rows (1, weight_1, weight_2), (0, 1 - x, x), (0, -1, 1).
+/// Transforms the derivatives: (b, a, w) = M y with the rows (1, weight_1, weight_2), (0, 1 - x, x), (0, -1,
+/// 1).
 [[gnu::always_inline]] inline void add_in_local(const Slopes &d, double x, Slopes &y) noexcept {
     const double m1 = weight_1(x), m2 = weight_2(x), n1 = 1 - x, n2 = x;
     const Lanes t1 = m1 * d.h00 + n1 * d.h01 - d.h02, t2 = m2 * d.h00 + n2 * d.h01 + d.h02;
@@ -174,7 +175,7 @@ struct NormState {
     y.h22 += m2 * t2 + n2 * a2 + w2;
 }
 
-/// Largest step over 1 that a pair of slacks allows, whose values are 1 - u and 1 + u.
+/// Inverse of the maximum step within the slacks 1 - u and 1 + u, and within those of the jerk.
 [[gnu::always_inline]] inline Lanes inverse_step(const State &s, const State &ds, const RowLanes &r,
                                                  const JerkBound &of_root) noexcept {
     const JerkBound bound = jerk_bound(s, of_root, r.k);
@@ -186,7 +187,7 @@ struct NormState {
                   larger((dz - slope) * (rb + z) * both, (-dz - slope) * (rb - z) * both));
 }
 
-/// The slack along a step t is at least s - t g - t^2 q: its root gives 1/t = (g + sqrt(g^2 + 4 s q))/(2 s).
+/// The slack after a step t is at least s - t g - t^2 q. Its root gives 1/t = (g + sqrt(g^2 + 4 s q))/(2 s).
 [[gnu::always_inline]] inline Lanes inverse_root(const Lanes &s, const Lanes &g, const Lanes &q) noexcept {
     return (g + root(g * g + 4.0 * s * q)) / (2.0 * s);
 }
@@ -221,7 +222,8 @@ void TimeLaw::begin(const Rows &rows, double before, double behind) {
     floors_.assign(padded + 2, 0.0);
 }
 
-/// Objective over mu and the barriers of all rows: gradient and Hessian in the coefficients.
+/// Calculates the gradient and the Hessian by the coefficients of the objective divided by mu plus the
+/// barriers of all rows.
 MW_WIDE void TimeLaw::assemble(double mu, const Range &range) {
     const auto from = static_cast<long>(range.first_block * LANES),
                to = static_cast<long>(range.last_block * LANES + 2);
@@ -229,7 +231,7 @@ MW_WIDE void TimeLaw::assemble(double mu, const Range &range) {
     for (auto &d : diagonal_) {
         std::fill(d.begin() + from, d.begin() + to, 0.0);
     }
-    // Coefficients above 0 keep b above 0 everywhere, between the places too.
+    // Positive coefficients keep b positive everywhere, also between the points.
     for (std::size_t i = range.first; i < range.last; ++i) {
         const double per_slack = 1 / (c_[i] - floors_[i]);
         gradient_[i] = weights_[i] / mu - per_slack;
@@ -280,7 +282,7 @@ MW_WIDE void TimeLaw::assemble(double mu, const Range &range) {
     }
 }
 
-/// LDL' of half bandwidth 2 on the coefficients [first, last), and the step that it gives.
+/// Factorises LDL' with half bandwidth 2 on the coefficients [first, last), and calculates the step.
 void TimeLaw::factorise(const Range &range) {
     const std::size_t first = range.first, last = range.last;
     std::vector<double> &D = diagonal_[0], &E = diagonal_[1], &F = diagonal_[2];
@@ -314,7 +316,7 @@ void TimeLaw::factorise(const Range &range) {
     }
 }
 
-/// The step to the nearest row, over the step of Newton's method.
+/// The step to the nearest row, as a fraction of the Newton step.
 MW_WIDE double TimeLaw::longest_step(const Range &range) const {
     Lanes worst{};
     for (std::size_t block = range.first_block; block < range.last_block; ++block) {
@@ -353,7 +355,7 @@ double TimeLaw::newton(double mu, const Range &range) {
     assemble(mu, range);
     factorise(range);
     if (!std::isfinite(decrement_)) {
-        return 0;  // the factorisation failed by rounding: the coefficients stay
+        return 0;  // the factorisation failed because of rounding: the coefficients do not change
     }
     const double t = std::min(1.0, KEEP * longest_step(range));
     for (std::size_t i = range.first; i < range.last; ++i) {
@@ -367,7 +369,7 @@ int TimeLaw::solve(std::size_t fixed_start, std::size_t fixed_end, const SolveSe
     if (last <= fixed_start) {
         return 0;
     }
-    // A coefficient has part in the cell of its number and the two before it.
+    // A coefficient affects the cell of its number and the two cells before it.
     const Range range{fixed_start, last, (std::max<std::size_t>(fixed_start, 2) - 2) / LANES,
                       std::min(rows_->blocks(), (last - 1) / LANES + 1)};
     gradient_.resize(c_.size());
@@ -412,7 +414,7 @@ LawState TimeLaw::state(std::size_t k, double x) const noexcept {
 }
 
 double TimeLaw::time_of(std::size_t cell) const noexcept {
-    // Quadrature of Gauss with four points.
+    // Gauss quadrature with four points.
     constexpr std::array<double, 4> X{0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
                                       0.9305681557970262};
     constexpr std::array<double, 4> W{0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
