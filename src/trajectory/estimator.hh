@@ -81,9 +81,8 @@ class Estimator {
     double move_top_ = 0;     ///< maximum speed along the parameter of the move until now
     double move_middle_ = 0;  ///< speed in the middle of the move
     std::uint64_t standing_cycles_ = 0;
-    double skipped_ = 0,
-           /// Length of the newest move that is not simulated; total time that is not simulated [s].
-        skipped_s_ = 0;
+    /// Length of the newest move that is not simulated; total time that is not simulated [s].
+    double skipped_ = 0, skipped_s_ = 0;
     bool isComplete_ = true;
     std::array<Pose, 4> last_{};
     std::size_t kept_ = 0;  ///< number of positions in `last_` from consecutive cycles

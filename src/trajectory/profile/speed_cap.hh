@@ -5,9 +5,9 @@
 // difference divided by T^2 weights the acceleration with a triangle, whose peak is 1/T. The third difference
 // divided by T^3 weights the jerk with the quadratic B-spline over three periods, whose peak is 3/(4 T) and
 // whose slope is at most 1/T^2. So at the speed v, a jump dq'' of the curvature causes a jerk of at most
-// 3/4 v^2 |dq''|/T. A jump dq' of the tangent causes a jerk of at most v |dq'|/T^2 and an acceleration of at most
-// v |dq'|/T. The smooth part of the motion uses the rest of the limits as long as the weights include the
-// jump.
+// 3/4 v^2 |dq''|/T. A jump dq' of the tangent causes a jerk of at most v |dq'|/T^2 and an acceleration of at
+// most v |dq'|/T. The smooth part of the motion uses the rest of the limits as long as the weights include
+// the jump.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The profile without jerk limits alone, along exact paths, judged by differences of samples.
+// Tests of the profile without jerk limits on exact paths, checked by differences of samples.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -22,7 +22,7 @@ Pose at(double x, double y = 0) {
     return p;
 }
 
-/// A path of moves that are followed exactly, and one speed limit.
+/// An exact path of moves, with one speed limit.
 struct ExactRun {
     curve::ExactBuilder builder{3.0};
     std::vector<FeedLimit> feeds;
@@ -45,7 +45,7 @@ struct ExactRun {
     }
 };
 
-/// Samples of cells of time, and their whole time.
+/// Samples of time cells, and their total time.
 struct Samples {
     std::vector<double> places;
     double time_s = 0;
@@ -67,7 +67,7 @@ struct Samples {
     }
 };
 
-/// Drives up to `plans` windows, each from the cell 0.1 s after the start of the one before.
+/// Simulates up to `plans` windows. Each continues from the cell 0.1 s after the start of the previous one.
 Samples drive(AccelerationProfile &profile, const Run &run, int plans = 1000) {
     constexpr double APART_S = 0.1;
     Samples out;
@@ -115,7 +115,8 @@ TEST(AccelerationProfile, DrivesACircleNearlyAtTheSpeedThatTheAxesAllow) {
     profile.begin(0);
     const Samples samples = drive(profile, path.run);
     samples.expect_within_limits(path);
-    // Each axis allows v^2/r up to A, and up to sqrt(2) A where both axes share the acceleration.
+    // The permitted v^2/r is A where one axis accelerates, and up to sqrt(2) A where both axes share the
+    // acceleration.
     const double length = 2 * std::numbers::pi * radius * 5;
     EXPECT_LT(samples.time_s, length / std::sqrt(A * radius) + 0.05);
 }

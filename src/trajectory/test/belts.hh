@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine whose joints are not axes, for tests.
+// A CoreXY machine, whose joints are not axes, for tests.
 #pragma once
 
 #include "trajectory/path/joint_map.hh"
 
 namespace mw::trajectory::test {
 
-/// X and Y by two belts.
+/// X and Y are moved by two belts.
 class Belts final : public JointMap {
   public:
     bool joints_at(const geometry::Pose &pose, double *joints) const noexcept override {

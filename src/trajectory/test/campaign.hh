@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Random programs of lines and arcs in up to nine coordinates and smooth curves cut into chords, with random
-// limits, driven with random holds, overrides, hiccups of the planner and drops.
+// Random programs of lines and arcs in up to nine coordinates and of smooth curves divided into chords. They
+// have random limits, and run with random holds, overrides, late plans and drops.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct Program {
     Limits limits;
     double tolerance = 0;
     geometry::PathMode join = geometry::PathMode::BLEND;
-    bool isBoxed = false;  ///< the soft limits are those of the path
+    bool isBoxed = false;  ///< the soft limits are the box of the path
 };
 
 class Maker {
@@ -43,7 +43,7 @@ class Maker {
         return p;
     }
 
-    /// At least 50 blocks and about `seconds` of motion or more.
+    /// A program of at least 50 blocks with a motion of about `seconds` or more.
     Program make_long(bool isCurve, double seconds) {
         Program p = frame();
         double slowest = 1e9;
@@ -82,7 +82,7 @@ class Maker {
         return p;
     }
 
-    /// Chords of a smooth curve, as close as CAM systems set them, with their figures rounded.
+    /// Chords of a smooth curve with rounded coordinates, as short as those of CAM systems.
     Program make_curve() {
         Program p = frame();
         p.tolerance = std::pow(10.0, real(-2.5, -1));
@@ -95,7 +95,7 @@ class Maker {
     }
 
   private:
-    /// Path mode and tolerance change on the way; none is wider than that of the program.
+    /// Changes path mode and tolerance within the program. No tolerance exceeds that of the program.
     void mix(Program &p) {
         p.join = geometry::PathMode::BLEND;
         p.tolerance = std::pow(10.0, real(-2.5, 0));
@@ -155,7 +155,7 @@ class Maker {
             at = to;
         }
     }
-    /// Limits, tolerance and path mode.
+    /// A program without moves, with random limits, tolerance and path mode.
     Program frame() {
         Program p;
         for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
@@ -236,7 +236,7 @@ class Maker {
     bool isMixed_;
 };
 
-/// Discrete Frechet, decided in order: the samples against the programmed path, which is sampled finely.
+/// Checks the samples against points of the programmed path with the discrete Frechet distance, in order.
 inline bool isInOrder(const std::vector<Pose> &samples, const Program &program, double tolerance) {
     std::vector<Pose> path;
     for (const Primitive &q : program.primitives) {
@@ -248,9 +248,9 @@ inline bool isInOrder(const std::vector<Pose> &samples, const Program &program, 
     return testing::isWithinInOrder(samples, path, tolerance);
 }
 
-/// The trajectory, straight between samples, against the program as it was given, in order and both ways.
-/// What is added to `allowed`: the fineness of the cutting, and how far a curve may leave the chord of a
-/// servo cycle.
+/// Checks the trajectory, interpolated between samples, against the program, in order and in both directions.
+/// It adds the distance of the points and the deviation of a curve from the chord of a servo cycle to
+/// `allowed`.
 inline bool isWithinProgram(const std::vector<Pose> &samples, const Program &program, double allowed) {
     constexpr double SHARE = 0.2, MOST_POINTS = 300000;
     double bulge = 0, length = 0;
@@ -273,7 +273,7 @@ inline bool isWithinProgram(const std::vector<Pose> &samples, const Program &pro
     return testing::isWithinInOrder(fine, path, near);
 }
 
-/// The box of the programmed path.
+/// Extends the box by the programmed path.
 inline void room_of(const Program &program, Pose &low, Pose &high) {
     for (const Primitive &q : program.primitives) {
         Pose from;
@@ -286,8 +286,8 @@ inline void room_of(const Program &program, Pose &low, Pose &high) {
     }
 }
 
-/// How far samples leave the soft limits, where lines stay within them. Rounded joints with arcs may leave
-/// them by a part of the tolerance.
+/// Maximum distance of samples outside the soft limits, for programs of lines. With arcs, rounded joints may
+/// exceed the limits by a part of the tolerance; the result is then 0.
 inline double worst_excursion(const std::vector<Pose> &samples, const Program &program) {
     const auto isArc = [](const Primitive &p) { return p.isArc; };
     if (!program.isBoxed || std::ranges::any_of(program.primitives, isArc)) {
@@ -305,7 +305,7 @@ inline double worst_excursion(const std::vector<Pose> &samples, const Program &p
     return worst;
 }
 
-/// How far the path may be from the programmed one; 0: any.
+/// Maximum deviation of the path from the programmed path; 0: any.
 inline double allowed_deviation(const Program &program) {
     if (program.join != geometry::PathMode::BLEND) {
         return 1e-6;
@@ -329,7 +329,7 @@ struct Outcome {
     bool isFinished = false;
 };
 
-/// Drives the program with random holds, overrides and planner hiccups.
+/// Runs the program with random holds, overrides and late plans.
 inline void drive(Maker &maker, const Program &program, Outcome &out, bool isDropped) {
     Rig &rig = out.rig;
     rig.planner.set_limits(program.limits);

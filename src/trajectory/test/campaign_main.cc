@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A campaign of random programs of at least 50 blocks and 5 s of motion each, in virtual time.
-// traj_campaign --first N --count M --log FILE [--processes P]: one line per seed in the log; seeds in it are
-// not driven again; the number before the verdict is a hash of every commanded bit. Ends with 1 when a
-// program has exceeded its limits or tolerance, or changed its order.
+// traj_campaign --first N --count M --log FILE [--processes P]: the log has one line per seed. Seeds in it
+// are not run again. The number before the verdict is a hash of every commanded bit. Exits with 1 if a
+// program has exceeded its limits or its tolerance, or changed its order.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,11 +26,12 @@ constexpr std::size_t LEAST_BLOCKS = 50;
 struct Verdict {
     std::size_t blocks = 0;
     double seconds = 0;
-    unsigned long long samples = 0;  ///< SampleHash of all that was commanded
+    unsigned long long samples = 0;  ///< SampleHash of all commanded poses
     std::string fault;
 };
 
-/// Nearest places, each no earlier than the one before: enough to say yes. A no is asked again of isInOrder.
+/// Follows the nearest points on the path, each not before the previous one. Success is sufficient proof. A
+/// failure is checked again with isInOrder.
 class Follower {
   public:
     Follower(const Program &program, double tolerance) : program_(program), tolerance_(tolerance) {}
@@ -125,7 +126,7 @@ Verdict judge(const Program &program, const Outcome &out, bool isDropped) {
     return v;
 }
 
-/// The program of a seed, longer and slower until it moves for LEAST_SECONDS.
+/// The program of a seed, made longer and slower until its motion takes LEAST_SECONDS.
 Verdict drive_seed(unsigned seed) {
     const bool isJerkLimited = seed % 4 != 0;
     const bool isCurve = seed % 4 == 1;
@@ -165,7 +166,7 @@ struct Task {
     std::string log;
 };
 
-/// Every `processes`-th seed; how many failed.
+/// Runs every `processes`-th seed. Returns the number of failures.
 int work(const Task &task, unsigned part, const std::set<unsigned> &done) {
     const int file = ::open(task.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (file < 0) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Random programs of lines and arcs in up to nine coordinates, with random limits, holds, overrides and
-// drops: every sample within the limits, the path within the tolerance and in order, its end exact.
-// MW_CAMPAIGN_SEEDS sets how many (default 60, fewer with jerk limits), MW_CAMPAIGN_FIRST the first seed.
+// drops. Every sample is within the limits, the path is within the tolerance and in order, and its end is
+// exact. MW_CAMPAIGN_SEEDS sets the number of seeds (default 60, fewer with jerk limits), MW_CAMPAIGN_FIRST
+// the first seed.
 #include <gtest/gtest.h>
 
 #include "tests/support/campaign_seeds.hh"
@@ -12,7 +13,7 @@ namespace {
 
 enum class Kind { RANDOM, CURVE, LONG };
 
-/// How often each question was asked: a campaign that asks none must not pass.
+/// Number of checks of each type. A campaign without checks must fail.
 struct Asked {
     int programs = 0, driven = 0, ordered = 0;
 };

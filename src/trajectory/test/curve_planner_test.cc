@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Programs driven along curves by planner and executor.
+// Programs that planner and executor run along curves.
 #include <gtest/gtest.h>
 
 #include "tests/support/campaign_seeds.hh"
@@ -30,7 +30,7 @@ Program program_of(int seed, Maker &maker) {
     return program;
 }
 
-/// Without disturbances: the program is driven to its exact end, within limits and tolerance.
+/// Without holds and overrides, the program ends exactly, within limits and tolerance.
 TEST(CurvePlanner, DrivesAProgram) {
     const auto [first_seed, count] = testing::campaign_seeds(SEEDS);
     for (int seed = first_seed; seed < first_seed + count; ++seed) {
@@ -106,7 +106,7 @@ TEST(CurvePlanner, CornersArePassedAtTheScaledSpeed) {
     }
 }
 
-/// With holds, overrides, a planner that is late, and in some programs a drop.
+/// The programs run with holds, overrides, late plans, and some with a drop.
 TEST(CurvePlanner, KeepsLimitsWithHoldsOverridesAndDrops) {
     const auto [first_seed, count] = testing::campaign_seeds(SEEDS);
     for (int seed = first_seed; seed < first_seed + count; ++seed) {
@@ -123,7 +123,7 @@ TEST(CurvePlanner, KeepsLimitsWithHoldsOverridesAndDrops) {
     }
 }
 
-/// True if a sample of the way around a corner is exactly at the corner.
+/// True if a sample near a corner is exactly at the corner.
 bool touchesCorner(const MoveRequest &first, const MoveRequest &second) {
     Limits limits;
     limits.velocity.fill(100);
@@ -160,7 +160,7 @@ TEST(CurvePlanner, StopsBetweenProbingFeedsPerRevolutionAndOtherMoves) {
     EXPECT_FALSE(touchesCorner(turned, turned));
 }
 
-/// A machine that needs seconds to stop: the plans reach far enough for its full speed.
+/// The machine needs seconds to stop. Plans must reach far enough for its full speed.
 TEST(CurvePlanner, ReachesFullSpeedWhereBrakingTakesSeconds) {
     constexpr double V = 200, A = 100, J = 1000, WAY = 1500;
     Program program;

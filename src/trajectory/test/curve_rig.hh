@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Curves of programs whose path mode changes, driven by profiles from stop to stop while they become known.
+// Curves of programs whose path mode changes. Profiles time them from stop to stop while more of the curve
+// becomes known.
 #pragma once
 
 #include <algorithm>
@@ -15,15 +16,15 @@ namespace mw::trajectory::test {
 
 inline constexpr double CURVE_PERIOD_S = profile::T;
 
-/// A curve with its feeds, caps and the places of its stops.
+/// A curve with its feeds, caps and stops.
 struct LaidCurve {
     std::vector<curve::Span> spans;
     std::vector<profile::FeedLimit> feeds;
     std::vector<profile::SpeedCap> caps;
     std::vector<double> stops;
-    double worst_deviation = 0;      ///< of blends, over their tolerance
-    std::vector<std::size_t> exact;  ///< moves that are followed exactly
-    std::vector<double> starts;      ///< places of the moves
+    double worst_deviation = 0;      ///< maximum deviation of fitted parts, divided by their tolerance
+    std::vector<std::size_t> exact;  ///< numbers of the moves that are followed exactly
+    std::vector<double> starts;      ///< s at the start of each move
 };
 
 class CurveLayer {
@@ -127,7 +128,7 @@ struct DrivenCurve {
     bool is_done = false;
 };
 
-/// Drives a curve that becomes known bit by bit.
+/// Times a curve that becomes known in parts.
 class CurveDriver {
   public:
     CurveDriver(const LaidCurve &laid, const profile::CurveLimits &limits) : laid_(laid) {
@@ -137,7 +138,7 @@ class CurveDriver {
         run_.caps = &caps_;
     }
     profile::Run &run() { return run_; }
-    /// A stop after so many plans, instead of the rest of the program.
+    /// Stops after this number of plans, before the end of the program.
     void stop_after(int plans, profile::StopEffort effort) {
         plans_left_ = plans;
         effort_ = effort;
@@ -156,9 +157,10 @@ class CurveDriver {
     }
 
   private:
-    static constexpr double KNOWN_S = 0.5;  ///< of motion at least known at first, if there is so much
+    /// Time of motion that is known at first, if the curve is long enough [s].
+    static constexpr double KNOWN_S = 0.5;
 
-    /// Shows spans and caps up to the end of a span, a stop at most.
+    /// Makes the next `count` spans known, with their caps, but not past the stop.
     void show(double stop, std::size_t count) {
         while (count > 0 && shown_ < laid_.spans.size() && laid_.spans[shown_].start_s < stop - 1e-12) {
             spans_.push_back(laid_.spans[shown_++]);

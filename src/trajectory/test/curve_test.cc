@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Curves against the programmed path: tolerance, smoothness, streaming.
+// Tests of curves: tolerance to the programmed path, smoothness, streaming.
 #include <cmath>
 #include <random>
 
@@ -28,7 +28,7 @@ std::vector<Primitive> lines(const std::vector<Pose> &points) {
     return out;
 }
 
-/// A circle of radius 8 by chords whose ends are rounded to a micrometre.
+/// A circle of radius 8 in chords, with ends rounded to a micrometre.
 std::vector<Pose> rounded_circle(int chords) {
     std::vector<Pose> points;
     for (int i = 0; i <= chords; ++i) {
@@ -47,7 +47,7 @@ std::vector<Span> fitted(const std::vector<Primitive> &moves, double tolerance, 
     return builder.spans();
 }
 
-/// The same, the curve made longer each time that so much has been added.
+/// The same, with the curve extended each time after moves of the length `each`.
 std::vector<Span> streamed(const std::vector<Primitive> &moves, double tolerance, double each) {
     CurveBuilder builder(WIDEST);
     for (const Primitive &p : moves) {
@@ -61,7 +61,7 @@ std::vector<Span> streamed(const std::vector<Primitive> &moves, double tolerance
     return builder.spans();
 }
 
-/// Largest distance between curve and path at the same s.
+/// Maximum distance between curve and path at the same s.
 double deviation(const std::vector<Span> &spans, const std::vector<Primitive> &moves) {
     double worst = 0, start = 0;
     std::size_t k = 0;
@@ -79,8 +79,8 @@ double deviation(const std::vector<Span> &spans, const std::vector<Primitive> &m
     return worst;
 }
 
-/// Largest jump of position, first, second and third derivative between spans, over the size of the
-/// derivative there.
+/// Maximum jump of position, first, second and third derivative between spans, divided by the size of the
+/// derivative.
 double worst_jump(const std::vector<Span> &spans) {
     double worst = 0;
     for (std::size_t k = 1; k < spans.size(); ++k) {
@@ -137,7 +137,8 @@ TEST(Curve, IsSmoothAndEndsWhereThePathEnds) {
 
 TEST(Curve, MakesOneCircleOfRoundedChords) {
     CurveBuilder builder(WIDEST);
-    // Chords of 0.05 mm: less than a quarter as many spans, and the curvature of the circle but at the ends.
+    // Chords of 0.05 mm: the curve has less than a quarter as many spans, and the curvature of the circle
+    // except at the ends.
     const auto moves = lines(rounded_circle(1005));
     const auto spans = fitted(moves, 0.01, builder);
     EXPECT_LT(4 * spans.size(), moves.size());
@@ -148,7 +149,7 @@ TEST(Curve, MakesOneCircleOfRoundedChords) {
     }
 }
 
-/// How far a curve leaves the box of the programmed path, over the size of the box.
+/// Maximum distance of a curve outside the box of the programmed path, divided by the size of the box.
 double worst_excursion(const std::vector<Span> &spans, const Pose &low, const Pose &high) {
     double worst = 0;
     for (const Span &span : spans) {
@@ -166,7 +167,7 @@ struct Fit {
     double excursion = 0, deviation = 0;
 };
 
-/// With the box of the path as soft limits.
+/// Fits a curve with the box of the path as soft limits.
 Fit fitted_in_box(const std::vector<Primitive> &moves, double tolerance) {
     Pose low = moves.front().start, high = low;
     for (const Primitive &p : moves) {
@@ -200,7 +201,7 @@ TEST(Curve, StaysWithinSoftLimitsThatThePathRunsAlongAndTouches) {
             EXPECT_LE(fit.deviation, 1);
         }
     }
-    // Without limits the curve leaves the box at corners: this test can fail.
+    // Without soft limits, the curve leaves the box at corners. This proves that the test can fail.
     CurveBuilder builder(WIDEST);
     EXPECT_GT(worst_excursion(fitted(peaks, 0.3, builder), xyz(0, 0), xyz(7, 10)), 1e-6);
 }
@@ -228,7 +229,7 @@ TEST(Curve, LeavesSoftLimitsNoFartherThanThePath) {
     EXPECT_LE(deviation(builder.spans(), moves), 0.1);
 }
 
-/// As in a box, but in directions across the axes.
+/// The same as with a box, but with limits in directions that are not axes.
 TEST(Curve, StaysWithinTheSoftLimitsOfBelts) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> part(0, 1);
@@ -313,7 +314,7 @@ TEST(Curve, KeepsTheToleranceOfRandomPathsInNineCoordinates) {
         const auto moves = lines(points);
         const double tolerance = std::pow(10.0, -2 + part(random));
         const auto spans = streamed(moves, tolerance, 20);
-        // Lengths and angles keep it apart.
+        // Lengths and angles have separate tolerances.
         EXPECT_LE(deviation(spans, moves), std::numbers::sqrt2 * tolerance) << n;
         EXPECT_LT(worst_jump(spans), 1e-5) << n;
     }

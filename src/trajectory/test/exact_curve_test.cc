@@ -63,7 +63,7 @@ Limits even_limits(double velocity, double acceleration, double jerk) {
     return limits;
 }
 
-/// Largest distance of the curve from a move at the same length.
+/// Maximum distance of the curve from a move at the same length.
 double worst_error(const std::vector<curve::Span> &spans, const Primitive &move, double start_s) {
     double worst = 0;
     std::size_t k = profile::span_at(spans, start_s + 1e-9 * move.length);
@@ -138,7 +138,7 @@ TEST(SpeedCap, IsTheSpeedAtWhichTheJumpTakesTheJerkOfASample) {
     EXPECT_FALSE(isNeeded(profile::cap_of(seam, limits, T), limits)) << "rounding";
 }
 
-/// The tangent is the same where they meet, the curvature is not.
+/// A line, an arc and a line with equal tangents and different curvatures.
 Program line_arc_line() {
     return exact_program({make_line(at(0, 0), at(10, 0)),
                           arc(at(10, 0), at(14, 4), at(10, 4), std::numbers::pi / 2),
@@ -184,7 +184,7 @@ TEST(ExactProfile, TakesAFeedThatEndsARoundingFromASeamAsOnePlace) {
     }
 }
 
-/// Lines and arcs of any size and chords of curves with G61 and G61.1, alone and among moves with G64.
+/// Lines and arcs of any size, and chords of curves, with G61 and G61.1, alone and between moves with G64.
 Program mixed_program(unsigned seed) {
     Maker maker(seed, true);
     Program program = maker.make_long(seed % 5 == 0, 4.0);
@@ -201,7 +201,7 @@ Program mixed_program(unsigned seed) {
     return program;
 }
 
-/// Tangent lines and arcs, so that exact paths pass seams.
+/// Tangent lines and arcs, so that exact paths pass seams without a stop.
 Program smooth_program(unsigned seed) {
     Maker maker(seed, true);
     Program program = maker.make_long(false, 4.0);

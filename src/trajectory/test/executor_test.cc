@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The servo side alone: plans made by hand, without a planner.
+// Tests of the servo side with plans of constant data, without a planner.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double V = 50, A = 1000, LENGTH = 100;
 constexpr double CELL_S = 0.01;
-/// Cells of the motion with a stop behind each.
+/// Number of cells of the motion; a stop begins at the end of each.
 constexpr Sequence CELLS = 20;
 
 /// One straight move along X.
@@ -47,7 +47,7 @@ struct ServoRig {
     }
     double x() const { return executor.output().position[0]; }
     double v() const { return executor.snapshot().v; }
-    /// Up to V in 0.05 s, then level; a stop follows behind every cell.
+    /// A plan that accelerates to V in 0.05 s, then cruises. A stop begins at the end of every cell.
     CurvePlan plan(std::uint64_t number) {
         CurvePlan out;
         out.plan = number;
@@ -70,7 +70,7 @@ struct ServoRig {
         ASSERT_TRUE(store->curve_plans.push(plan(1)));
         step(1);
     }
-    /// Steps until it stops; the largest change of speed in a cycle meanwhile.
+    /// Runs until standstill. Returns the maximum change of speed in a cycle.
     double stop() {
         double most = 0;
         double before = v();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A hash per seed of every commanded pose of random programs, which a change of shape must not change.
-// Besides the moves of traj_campaign: joints that are not axes, feed per revolution, threads, gates, single
-// blocks, joining with a separate tolerance, events, jerk limits that change from path to path.
-// traj_fingerprint --first N --count M: one line per seed; compare the output of two builds.
+// Prints a hash of every commanded pose of random programs per seed. A refactoring must not change it. In
+// addition to the moves of traj_campaign, the programs have joints that are not axes, feed per revolution,
+// threads, gates, single blocks, separate tolerances, events, and jerk limits that change from path to path.
+// traj_fingerprint --first N --count M: one line per seed. Compare the output of two builds.
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -28,7 +28,7 @@ JointLimits table_limits(Maker &maker) {
     return l;
 }
 
-/// Feeds per revolution and gates at random places of a program.
+/// Adds feeds per revolution and gates at random moves of a program.
 void vary(Maker &maker, Program &p) {
     bool isFirst = false;
     double per_revolution = 0;
@@ -95,7 +95,7 @@ struct Drive {
     bool isOver() const {
         return rig.executor.isAtRest() && rig.executor.snapshot().done_move >= rig.planner.last_move();
     }
-    /// One path, to its end or until it is dropped or takes too long.
+    /// Runs one path to its end, or until it is dropped or takes too long.
     bool run_path(const Program &program, int most_cycles) {
         std::size_t fed = 0;
         const int drop_at = maker.chance(0.2) ? maker.whole(100, 5000) : -1;
@@ -164,7 +164,8 @@ void fingerprint(unsigned seed) {
     Maker maker(seed, seed % 3 != 0);
     const TurningTable table;
     Rig rig{Pose{}};
-    rig.planner_period = seed % 6 == 0 ? 2 : 5;  // 2: a plan is made while the one before it waits
+    // 2: a plan is made while the previous one waits for acceptance.
+    rig.planner_period = seed % 6 == 0 ? 2 : 5;
     Drive drive{.maker = maker, .rig = rig, .scales = {}, .hash = {}};
     drive.rps = maker.real(-15, 15);
     int finished = 0;

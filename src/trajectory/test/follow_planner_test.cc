@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Following a position that another process moves: judged by the samples alone.
+// Tests of a coordinate that follows a position of another process, checked by samples only.
 #include <cmath>
 #include <random>
 
@@ -25,8 +25,8 @@ TEST(FollowPlanner, APlaceThatKeepsTheLimitsIsFollowedWithoutLag) {
         planner.reset(0);
         for (int n = 1; n < 20000; ++n) {
             const double t = n * DT;
-            const double wanted =
-                10 * (1 - std::cos(3 * t));  // 30 /s, 90 /s^2, 270 /s^3 after a jump to 90 /s^2
+            // Velocity 30 /s, acceleration 90 /s^2, jerk 270 /s^3, after a jump to 90 /s^2.
+            const double wanted = 10 * (1 - std::cos(3 * t));
             planner.follow(wanted, limits, DT);
 
             if (jerk == 0 || n > 1000) {
@@ -49,7 +49,7 @@ TEST(FollowPlanner, WhateverThePlaceDoesTheLimitsHoldAndItIsReached) {
         for (int n = 0; n < 4000; ++n) {
             const double kind = part(random);
             if (kind < 0.002) {
-                wanted = 160 * part(random) - 80;  // a step
+                wanted = 160 * part(random) - 80;  // step change of the command
             } else if (kind < 0.005) {
                 speed = limits.velocity * (3 * part(random) - 1.5);
             } else if (kind < 0.01) {

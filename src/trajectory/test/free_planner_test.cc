@@ -56,7 +56,7 @@ TEST(AxisMotion, RandomTargetChangesKeepTheLimits) {
     }
 }
 
-/// A feed override of zero, and a stop after it, come while it decelerates towards its target.
+/// While the motion decelerates to its target, the feed override becomes 0, and then a stop is requested.
 TEST(AxisMotion, WhoMayHaveNoSpeedAnyMoreComesToRestFromEverywhere) {
     for (unsigned seed = 1; seed <= 2000; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -118,8 +118,8 @@ TEST(AxisMotion, RandomTargetChangesKeepTheJerkLimitToo) {
     }
 }
 
-/// The time of a move from rest to rest: 4 (d / 2J)^(1/3) if neither limit is reached, d / V + V / A + A / J
-/// if both are.
+/// The minimum time of a move from standstill to standstill is 4 (d / 2J)^(1/3) if neither limit is reached,
+/// and d / V + V / A + A / J if both are reached.
 TEST(AxisMotion, ReachesItsTargetInTheLeastTimeWithAJerkLimit) {
     struct Move {
         double way, seconds;
@@ -140,8 +140,8 @@ TEST(AxisMotion, ReachesItsTargetInTheLeastTimeWithAJerkLimit) {
     }
 }
 
-/// A stop that is asked for in every cycle while what it may brake with changes, as joints leave more or less
-/// of it to an axis: at rest no later than with the least of it, and never faster than before.
+/// A stop is requested in every cycle, while the acceleration limit changes because joints leave more or less
+/// of it to an axis. The motion must stop no later than with the minimum limit, and never become faster.
 TEST(AxisMotion, AStopThatIsAskedForAgainAndAgainStops) {
     for (const double jerk : {0.0, 8000.0}) {
         for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -164,13 +164,13 @@ TEST(AxisMotion, AStopThatIsAskedForAgainAndAgainStops) {
                 p.max_acceleration = cycles % 2 == 0 && seed < 10 ? 0.93 * A : A * share(random);
                 p.stop();
                 p.step(T);
-                // With a jerk limit it may become faster until its acceleration is 0.
+                // With a jerk limit, the speed may increase until the acceleration is 0.
                 const double rise = jerk > 0 ? 0.5 * A * A / jerk : 0.0;
                 ASSERT_LE(std::abs(p.velocity), before + rise + 1e-12) << "cycle " << cycles;
                 before = std::abs(p.velocity);
             }
             EXPECT_TRUE(p.isAtRest());
-            const double turn_s = jerk > 0 ? 2 * A / jerk : 0.0;  // of the acceleration
+            const double turn_s = jerk > 0 ? 2 * A / jerk : 0.0;  // time for the change of the acceleration
             EXPECT_LE(cycles * T, fastest / (0.6 * A) + turn_s + 3 * T);
             EXPECT_LE(std::abs(p.position - from),
                       0.5 * fastest * fastest / (0.6 * A) + fastest * (turn_s + T));
@@ -203,7 +203,8 @@ TEST(AxisMotion, WhoIsSentOnWhileItBrakesGoesThere) {
     }
 }
 
-/// A target that goes a little on in every cycle is reached in each of them: it is under way nevertheless.
+/// The target moves by a small step in every cycle. The motion reaches it in each cycle, but must not count
+/// as stopped.
 TEST(AxisMotion, ATargetThatCreepsMakesNoJump) {
     AxisMotion p;
     p.max_velocity = 50;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Joints that are not axes: their derivatives along curves, limits at every servo sample, poses without
-// joints.
+// Joints that are not axes: derivatives along curves, limits at every servo sample, poses without a solution.
 #include <cmath>
 #include <numbers>
 
@@ -40,7 +39,7 @@ TEST(JointCurve, HasTheDerivativesOfTheMap) {
     const auto spans = spans_of({make_line(pose(10, -20, 0), pose(60, 15, 200))});
     joints.cover(spans);
     EXPECT_EQ(joints.drivable_s(), 1e300);
-    // Along the line x, y and c are linear in s: derivatives of the products in closed form.
+    // Along the line, x, y and c are linear in s. So the derivatives of the products have a closed form.
     const Pose step = spans[0].c[1] * (1 / spans[0].length), start = spans[0].c[0];
     const double w = step[geometry::AXIS_C] * std::numbers::pi / 180;
     for (double s = 0.05; s < spans.back().end_s(); s += 0.37) {
@@ -91,7 +90,7 @@ TEST(JointCurve, IsComputedOnceWhileTheCurveGrows) {
     EXPECT_LT(grown.parts().size(), whole.parts().size());
 }
 
-/// Joints behind x = 40 do not exist, or jump there.
+/// For x above 40, the kinematics has no solution, or a joint jumps there.
 class Broken final : public JointMap {
   public:
     explicit Broken(bool jumps) noexcept : jumps_(jumps) {}
@@ -171,7 +170,7 @@ TEST(JointProfile, KeepsTheLimitsOfJointsAtEverySample) {
     EXPECT_GE(2 * limited, count) << "joints limit the motion";
 }
 
-/// A turning arm that reaches out: a singular pose at X0 Y0.
+/// A rotating arm with a radial joint. X0 Y0 is a singular pose.
 class Polar final : public JointMap {
   public:
     bool joints_at(const Pose &p, double *joints) const noexcept override {
@@ -202,7 +201,7 @@ TEST(JointProfile, SlowsDownBesideASingularPose) {
         ASSERT_TRUE(out.is_done);
         EXPECT_LE(out.worst_start, 1 + 1e-6);
         EXPECT_GT(expect_joint_limits(out.samples, map, joints), 0.9);
-        // The arm turns by 180 degrees in 2 s and reaches 40 units out and in.
+        // The arm rotates by 180 degrees in 2 s, and moves 40 units out and in.
         EXPECT_LT(out.time_s, 4.0);
     }
 }

@@ -22,7 +22,7 @@ inline JointLimits joint_limits(double velocity, double acceleration, double jer
     return limits;
 }
 
-/// From 10 to 500/s, 100 to 10,000/s^2 and 8 to 300 times as much jerk.
+/// Random limits: 10 to 500/s, 100 to 10,000/s^2, and 8 to 300 times this value for the jerk.
 inline JointLimits random_joint_limits(Maker &maker) {
     JointLimits joints = joint_limits(0, 0, 0);
     for (std::size_t j = 0; j < 4; ++j) {
@@ -33,7 +33,7 @@ inline JointLimits random_joint_limits(Maker &maker) {
     return joints;
 }
 
-/// The joints at each sample against their limits. Returns the largest part that they take of one.
+/// Checks the joints at each sample against their limits. Returns the maximum use of a limit.
 inline double expect_joint_limits(const std::vector<Pose> &samples, const JointMap &map,
                                   const JointLimits &limits) {
     std::vector<testing::AxisLimit> each;
@@ -50,7 +50,7 @@ inline double expect_joint_limits(const std::vector<Pose> &samples, const JointM
     return std::max({checker.worst_velocity(), checker.worst_acceleration(), checker.worst_jerk()});
 }
 
-/// An arc moved to `from` that turns the table, too.
+/// An arc that begins at `from` and also rotates the table.
 inline Primitive turned_arc(const Primitive &p, const Pose &from, const Pose &to) {
     ArcShape shape;
     shape.isInUvw = p.space == geometry::AXIS_U;
@@ -66,7 +66,7 @@ inline Primitive turned_arc(const Primitive &p, const Pose &from, const Pose &to
     return out;
 }
 
-/// Lines, arcs and curves over X Y Z and C, exact or not.
+/// Lines, arcs and curves over X Y Z and C, exact or fitted.
 inline Program table_program(Maker &maker, unsigned seed) {
     Program program = maker.make_long(seed % 4 == 1, 2.0);
     constexpr std::size_t MOST = 60;

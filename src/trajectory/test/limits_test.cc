@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Limits of stretches alone, judged by differences of positions on them.
+// Tests of the limits on parts of primitives, checked by differences of positions.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -13,7 +13,7 @@
 namespace mw::trajectory::test {
 namespace {
 
-/// First and second derivative by differences of positions: nothing of the formulas under test.
+/// First and second derivative from differences of positions. They do not use the formulas under test.
 struct Derivatives {
     Pose q1, q2;
 };
@@ -26,7 +26,7 @@ Derivatives differences(const Position &position, double x, double h) {
     return {(after - before) * (0.5 / h), ((after - here) - (here - before)) * (1.0 / (h * h))};
 }
 
-/// How far the use of a stretch at (v, a) is from its limits: the worst ratio over places and axes.
+/// Use of the limits at (v, a): the maximum ratio over positions and axes.
 struct Use {
     double velocity = 0, acceleration = 0;
 };

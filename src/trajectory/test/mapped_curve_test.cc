@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Machines whose joints are not axes, driven along curves by planner and executor.
+// Machines whose joints are not axes: programs that planner and executor run along curves.
 #include <gtest/gtest.h>
 
 #include "tests/support/campaign_seeds.hh"
@@ -40,7 +40,7 @@ JointSpan span_of(const std::vector<Primitive> &path, const JointMap &map) {
     return span;
 }
 
-/// Soft limits of the joints are those of the path: no deviation may leave them.
+/// The soft limits of the joints are their range along the path, so no deviation may exceed them.
 TEST(MappedCurve, KeepsLimitsAndSoftLimitsOfJoints) {
     const auto [first_seed, count] = testing::campaign_seeds(SEEDS);
     int limited = 0;
@@ -63,7 +63,7 @@ TEST(MappedCurve, KeepsLimitsAndSoftLimitsOfJoints) {
             driven.take(table, sample);
         }
         for (std::size_t j = 0; j < 4; ++j) {
-            // What lies between the places of the path that were asked.
+            // Possible excess between the samples of the path.
             constexpr double BETWEEN = 1e-4;
             EXPECT_GE(driven.low[j], path.low[j] - BETWEEN) << "joint " << j;
             EXPECT_LE(driven.high[j], path.high[j] + BETWEEN) << "joint " << j;
@@ -75,7 +75,7 @@ TEST(MappedCurve, KeepsLimitsAndSoftLimitsOfJoints) {
     EXPECT_GE(2 * limited, count) << "joints limit the motion";
 }
 
-/// The samples along a move are bounded, however long it is.
+/// The number of samples along a move is bounded, however long the move is.
 TEST(MappedCurve, AHelixOfManyTurnsHasATolerance) {
     const TurningTable table(100);
     Workspace workspace;
@@ -98,7 +98,7 @@ TEST(MappedCurve, AHelixOfManyTurnsHasATolerance) {
     EXPECT_LE(kept, 0.1);
 }
 
-/// The override of rapid moves is a part of the velocity of joints, too.
+/// The rapid override also scales the velocity limits of joints.
 TEST(MappedCurve, RapidOverrideScalesJoints) {
     const TurningTable table(100);
     JointLimits joints = joint_limits(50, 1000, 20000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What tests of single parts begin with: plain limits and moves.
+// Limits and moves for tests of single parts.
 #pragma once
 
 #include "trajectory/path/limits.hh"
@@ -17,7 +17,7 @@ inline Pose at(double x, double y = 0, double z = 0) {
     return p;
 }
 
-/// The same for every axis, none for the norm.
+/// The same limits for every axis, none for the norm.
 inline Limits even_limits(double v, double a) {
     Limits l;
     l.velocity.fill(v);

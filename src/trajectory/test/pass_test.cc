@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Passes of threads: the motion within its limits, and the helix by the true angle of the rotor.
+// Passes of threads: the motion is within its limits, and the helix is checked with the true angle of the
+// rotor.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -44,7 +45,7 @@ TEST(SpeedChange, LeadsToTheSpeedWithoutAccelerationWithinTheLimits) {
     }
 }
 
-/// A pass of lines, driven alone with a spindle that has inertia and an encoder.
+/// A pass of lines, with a simulated spindle that has inertia and an encoder.
 struct Threading {
     std::unique_ptr<PathStore> store = std::make_unique<PathStore>();
     Conditions conditions{T};
@@ -59,8 +60,8 @@ struct Threading {
     struct Seen {
         Pose v, a, j;
         double x_end = 0;
-        double farthest = 0;  ///< from the helix, within the pass [turns]
-        double phase = NAN;   ///< of the helix by the rotor's true angle [turns]
+        double farthest = 0;  ///< maximum distance from the helix within the pass [rev]
+        double phase = NAN;   ///< phase of the helix by the true angle of the rotor [rev]
         int cycles = 0;
         bool is_over = false;
     } seen;
@@ -89,7 +90,7 @@ struct Threading {
         plant.run(command, 0, T);
         track.take(plant.shown_turns(), T);
     }
-    /// `lead`: along the path.
+    /// `lead`: distance along the path per revolution [unit].
     void make(const std::vector<Pose> &corners, double lead) {
         plan::PassBuilder builder(3);
         builder.begin(0);
@@ -129,7 +130,7 @@ struct Threading {
     SpindleReading reading() const {
         return {track.turns(), track.turns_per_s(), track.turns_per_s2(), {}, track.step()};
     }
-    /// Judged between the two places.
+    /// Runs the pass. It is checked between the two values of s.
     template <class OnCycle>
     void run(double lead, double from, double to, OnCycle on_cycle) {
         follower.begin(*store, pass, reading(), T);
@@ -188,7 +189,7 @@ TEST(Pass, FollowsTheHelixWithinTheLimitsAndEndsAtItsEnd) {
     }
 }
 
-/// What is cut by passes at different speeds and angles is one thread.
+/// Passes at different speeds and angles cut the same thread.
 TEST(Pass, EveryPassHasTheSameAngle) {
     for (const double jerk : {UNLIMITED, 20000.0}) {
         double low = INFINITY, high = -INFINITY;

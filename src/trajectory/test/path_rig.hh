@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Planner and executor stepped together in virtual time, with random programs to feed them.
+// Runs planner and executor in virtual time, with random programs.
 #pragma once
 
 #include <cmath>
@@ -39,7 +39,7 @@ struct Rig {
             planner.update(executor.snapshot());
         }
     }
-    /// Until everything is driven; false when that takes longer than `max_s`.
+    /// Runs until the path is complete. False if that takes longer than `max_s` [s].
     bool run(double max_s) {
         planner.release_end();
         for (int i = 0; i < max_s / T; ++i) {

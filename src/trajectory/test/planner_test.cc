@@ -49,7 +49,8 @@ TEST(Planner, DrivesOneLineToItsExactEndInTheTimeOfATrapezoid) {
     const double length = std::hypot(10.0, 3.3);
     const double a = 1000 / (10 / length);
     const double expected = length / 50 + 50 / a;
-    EXPECT_NEAR(static_cast<double>(rig.cycle) * Rig::T, expected, 0.012);  // planner period and latency
+    // Tolerance: planner period and latency.
+    EXPECT_NEAR(static_cast<double>(rig.cycle) * Rig::T, expected, 0.012);
 }
 
 TEST(Planner, ExactStopComesToRestOnTheCorner) {
@@ -63,7 +64,7 @@ TEST(Planner, ExactStopComesToRestOnTheCorner) {
     for (const Pose &p : rig.samples) {
         nearest = std::min(nearest, geometry::norm(p - at(5)));
     }
-    EXPECT_LT(nearest, 1e-3 * 1e-3 * 1000);  // a sample within a T^2 of the corner
+    EXPECT_LT(nearest, 1e-3 * 1e-3 * 1000);  // distance of a sample from the corner: at most a T^2
 }
 
 TEST(Planner, BlendKeepsToleranceAndSpeed) {
@@ -77,7 +78,7 @@ TEST(Planner, BlendKeepsToleranceAndSpeed) {
     for (const Pose &p : rig.samples) {
         nearest = std::min(nearest, geometry::norm(p - at(20)));
     }
-    EXPECT_LE(nearest, 0.102);  // samples are up to 0.05 apart
+    EXPECT_LE(nearest, 0.102);  // distance of samples: up to 0.05
     EXPECT_GT(nearest, 0.05);
 }
 
@@ -106,7 +107,7 @@ TEST(Planner, LostPlannerMeansAStopOnThePath) {
     expect_within(rig, plain_limits());
 }
 
-/// Joints that can be nowhere but at x = 0.
+/// The kinematics has a solution only at x = 0.
 class NoMap final : public JointMap {
   public:
     bool joints_at(const Pose &pose, double *joints) const noexcept override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Lines and helices alone, judged by points on them.
+// Tests of lines and helices, checked at points on them.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -11,7 +11,7 @@
 namespace mw::trajectory::test {
 namespace {
 
-/// Rounds as a CAM system writes a figure.
+/// Rounds a coordinate as a CAM system writes it.
 double rounded(double x, int decimals) {
     const double scale = std::pow(10.0, decimals);
     return std::round(x * scale) / scale;
@@ -21,8 +21,8 @@ class Arcs {
   public:
     explicit Arcs(unsigned seed) : random_(seed) {}
 
-    /// An arc across axis `normal` from a start that is exact to an end and a centre that are rounded; false
-    /// where rounding leaves no arc.
+    /// Makes an arc around axis `normal`, with an exact start and a rounded end and centre. False if no arc
+    /// results from the rounding.
     bool next(int normal, int decimals, double climb, Primitive &out) {
         const int first = (normal + 1) % 3;
         const int second = (normal + 2) % 3;
@@ -68,7 +68,7 @@ TEST(Primitive, EndsWhereItWasToldToTheBit) {
         EXPECT_EQ(position_at(p, -1), p.start);
         EXPECT_EQ(position_at(p, p.length), p.end);
         EXPECT_EQ(position_at(p, p.length + 1), p.end);
-        // And next to its ends it is near them: nothing jumps.
+        // Near its ends, the primitive is near them: the position does not jump.
         const double h = 1e-6 * p.length;
         EXPECT_LT(geometry::norm(position_at(p, h) - p.start), 2 * h + 1e-9);
         EXPECT_LT(geometry::norm(position_at(p, p.length - h) - p.end), 2 * h + 1e-9);
@@ -191,8 +191,8 @@ TEST(Extent, HoldsTheArcAndLittleMore) {
                 most[i] = std::max(most[i], q[i]);
             }
         }
-        // Between two points an arc bulges by radius (step / 2)^2 / 2; what rounding adds along the way moves
-        // a turning point by a parabola's worth of it.
+        // Between two points, an arc exceeds its chord by radius (step / 2)^2 / 2. The rounding error along
+        // the arc shifts an extreme by an amount that follows from a parabola.
         const double sweep = std::abs(p.omega) * p.length;
         const double step = sweep / POINTS;
         const double off = (std::abs(p.dradius) + geometry::norm_xyz(p.lin)) * p.length;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What tests of profiles share.
+// Helpers for tests of profiles.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ inline CurveLimits limits_of(const Limits &limits) {
     return out;
 }
 
-/// Worst ratio of velocity, acceleration and jerk of the XYZ norm to their limits, by differences of the
+/// Maximum ratio of velocity, acceleration and jerk of the XYZ norm to their limits, from differences of the
 /// samples.
 inline double worst_norm(const std::vector<Pose> &samples, const Limits &limits) {
     double worst = 0;

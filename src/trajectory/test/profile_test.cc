@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Profiles from stop to stop: limits at every servo sample, shortest times, plans that start from what can be
-// driven.
+// Profiles from stop to stop: limits at every servo sample, minimum times, plans that start from a valid
+// motion.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -21,10 +21,10 @@ struct Driven {
     bool is_done = false;
 };
 
-/// Cells that a window keeps behind what is driven.
+/// Number of cells that a window keeps after the executed ones.
 constexpr std::size_t LEAST_CELLS = 8;
 
-/// Drives some cells, of `seconds`; true at the end of the run.
+/// Takes cells of `seconds` from the profile. True at the end of the run.
 bool take(Profile &profile, double seconds, std::vector<TimeCell> &out) {
     const std::size_t cells = profile.cells();
     const std::size_t last = profile.isComplete() ? cells : cells - std::min(cells, LEAST_CELLS);
@@ -37,7 +37,7 @@ bool take(Profile &profile, double seconds, std::vector<TimeCell> &out) {
     return profile.isComplete() && k == cells;
 }
 
-/// The whole program on one curve, the curve streamed, planned in windows.
+/// Plans the whole program on one curve in windows, while the curve is streamed.
 Driven drive(const std::vector<Primitive> &moves, const std::vector<double> &velocity,
              const CurveLimits &limits, double tolerance) {
     curve::CurveBuilder builder(3.0);
@@ -118,7 +118,7 @@ TEST(Profile, TakesTheTimeOfTheClosedFormOnAStraightLine) {
         const Driven out = drive({make_line(Pose{}, xyz(c.length, 0))}, {1e300},
                                  even_limits(c.velocity, c.acceleration, c.jerk), 0.01);
         ASSERT_TRUE(out.is_done);
-        // Seven phases: with the top speed v the move takes length/v and one ramp.
+        // Motion of seven phases: with the maximum speed v, the move takes length/v and one ramp.
         const auto ramp = [&](double v) {
             return v >= c.acceleration * c.acceleration / c.jerk
                        ? v / c.acceleration + c.acceleration / c.jerk
@@ -139,12 +139,12 @@ TEST(Profile, PassesACornerFasterThanTheFullStopsOfItsLines) {
     const std::vector<Primitive> moves{make_line(Pose{}, xyz(10, 0)), make_line(xyz(10, 0), xyz(10, 10))};
     const Driven out = drive(moves, {100, 100}, even_limits(200, 1000, 10000), 0.05);
     ASSERT_TRUE(out.is_done);
-    // Study of the corner: 0.635 s with a stop, 0.597 s at best.
+    // Reference for this corner: 0.635 s with a stop, 0.597 s at best.
     EXPECT_LT(out.time_s, 0.606);
     EXPECT_LE(out.worst_deviation, 1);
 }
 
-/// A line of this length, and its plan at the start.
+/// A line of this length, with its plan at the start.
 struct LinePlan {
     curve::ExactBuilder builder{3.0};
     std::vector<FeedLimit> feeds;
@@ -182,7 +182,7 @@ TEST(Profile, RejectsAPlanThatStartsOutsideOfALimit) {
     EXPECT_EQ(line.profile.rejected(), 2);
 }
 
-/// The time from a place to the end of a line after the feed was raised there.
+/// Time from the change to the end of a line after the feed is raised.
 double time_after_raise(LinePlan &line, double low) {
     line.feeds[0].velocity = low;
     std::vector<TimeCell> cells;
@@ -206,8 +206,8 @@ double time_after_raise(LinePlan &line, double low) {
 TEST(Profile, SpeedsUpWithinAPlanWhenTheFeedIsRaised) {
     for (const double low : {5.0, 30.0, 80.0}) {
         LinePlan line(200, {{200, 1e300}});
-        // From the lower speed to 90 units/s and to rest: half of the speed is lost over each ramp. The next
-        // 50 ms were planned at the lower speed.
+        // Acceleration from the lower speed to 90 units/s and a stop: each ramp loses half of the speed. The
+        // next 50 ms are already planned at the lower speed.
         const double up = (90 - low) * (90 - low) / 90 / 1000 / 2 + (90 - low) / 90 * 0.02 / 2;
         const double down = 90.0 / 1000 / 2 + 0.02 / 2;
         EXPECT_LT(time_after_raise(line, low), up + down + 0.02) << low;
@@ -227,7 +227,7 @@ TEST(Profile, AFeedThatChangesAgainAndAgainDoesNotSplitCellsForEver) {
     EXPECT_LT(most, 1000U);
 }
 
-/// The slack of a jerk row grows as the speed falls. It must not pull the speed to 0.
+/// The slack of a jerk row grows as the speed falls. It must not reduce the speed to 0.
 TEST(TimeLaw, MakesTheSpeedLeastDownToAPartOfTheStart) {
     LinePlan line(200, {{200, 1e300}});
     RestMap map;
@@ -248,7 +248,7 @@ TEST(TimeLaw, MakesTheSpeedLeastDownToAPartOfTheStart) {
     settings.steps_per_mu = 20;
     law.solve(2, 0, settings);
     EXPECT_LE(law.worst(), 1);
-    // A stop takes 50 ms and 1.25 units, and the time of full jerk.
+    // A stop takes 50 ms plus the time of full jerk, and 1.25 units.
     for (std::size_t k = 40; k + 1 < law.cells(); ++k) {
         EXPECT_GT(law.state(k, 0.5).b, 1e-3 * START) << k;
         EXPECT_LT(law.state(k, 0.5).b, 5e-2 * START) << k;
@@ -269,7 +269,7 @@ TEST(SpeedPlan, TheFirstCellsOfACourseAreTheSameMotion) {
     }
 }
 
-/// A creep over cells of any length keeps every row by far: it is a function of the path.
+/// A creep over cells of any length is far within every row, because it is a function of the path.
 TEST(Profile, CreepsAlikeOverCellsOfAnyLength) {
     LinePlan line(20, {{7, 1e300}, {7.2, 0.5}, {20, 50}});
     RestMap map;
@@ -296,7 +296,7 @@ TEST(Profile, CreepsAlikeOverCellsOfAnyLength) {
     }
 }
 
-/// A coordinate that begins to move smoothly: its lower derivatives are 0 where its span begins.
+/// A coordinate begins to move smoothly: its lower derivatives are 0 at the start of its span.
 TEST(Profile, LimitsACoordinateThatBeginsToMoveSmoothly) {
     LinePlan line(1, {{1, 50}});
     std::vector<curve::Span> spans = line.builder.spans();
@@ -310,7 +310,7 @@ TEST(Profile, LimitsACoordinateThatBeginsToMoveSmoothly) {
     EXPECT_EQ(rows.coordinates(), 2U);
 }
 
-/// A feed that ends a rounding before the stop is no place at which the speed is 0.
+/// A feed that ends within rounding of the stop must not cause a second point with speed 0.
 TEST(Profile, TakesAFeedThatEndsARoundingBeforeTheStopAsOnePlace) {
     constexpr double END = 475;
     LinePlan line(END, {{END - 3e-12, 50}, {END + 1, 20}});

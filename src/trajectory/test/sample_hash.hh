@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// One number for a row of values, such that another bit in any of them gives another number (FNV-1a).
+// A hash of a sequence of values (FNV-1a). A change of any bit changes the hash.
 #pragma once
 
 #include <bit>

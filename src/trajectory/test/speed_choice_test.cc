@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Speeds that a user's planner module chooses: what is within the limits is driven as chosen, what is not
-// stops the path within them. The judge is the checker of samples, which knows no plan.
+// Speeds that a user's planner module chooses. A choice within the limits is executed. Any other choice stops
+// the path within the limits. The checker of samples does not know the plan.
 #include <cmath>
 #include <random>
 
@@ -14,7 +14,7 @@ namespace {
 
 using Kind = Overreach::Kind;
 
-/// A chooser from a function; counts how often it is asked.
+/// A planner module with a function as its choice. It counts the calls.
 struct Chooser final : SpeedChooser {
     using Rule = std::function<int(const SpeedStretch &, std::span<ChosenPhase>)>;
     Rule rule;
@@ -28,8 +28,8 @@ struct Chooser final : SpeedChooser {
     }
 };
 
-/// Accelerates to a share of the maximum speed and decelerates, with a share of the acceleration at all
-/// speeds.
+/// Accelerates to a fraction of the maximum speed and decelerates, with a fraction of the maximum
+/// acceleration at all speeds.
 int gentle(const SpeedStretch &s, std::span<ChosenPhase> out, double speed_share, double share) {
     const double a = share * std::min(s.at_rest, s.at_cap);
     const double end = std::min(s.out, std::max(s.speed, speed_share * s.cap));
@@ -126,7 +126,7 @@ TEST(SpeedChoice, WhatIsTooMuchStopsThePathWithinTheLimits) {
     };
     const Limits limits = even_limits(100, 1000);
     for (const Kind kind : {Kind::TOO_FAST, Kind::TOO_HARD, Kind::NOT_THERE, Kind::NO_ANSWER, Kind::NONE}) {
-        // At any stretch, at rest or at speed.
+        // At different segments, at standstill and at speed.
         for (const int first : {1, 2, 5, 9}) {
             Chooser wrong;
             wrong.rule = [&](const SpeedStretch &s, std::span<ChosenPhase> out) {

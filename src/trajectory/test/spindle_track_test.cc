@@ -43,7 +43,7 @@ TEST_F(Observed, TheStepOfTheEncoderIsKnownSoonAfterTheStart) {
     }
 }
 
-/// A reading that is wrong for one cycle, by a part of a step or by much.
+/// One reading is wrong, by a fraction of a step or by much more.
 TEST_F(Observed, AWrongReadingHardlyChangesTheStep) {
     for (const int counts : ENCODERS) {
         for (const double error : {2e-6, 3e-5, 0.01, 0.2, 3.0}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Stops in the middle of a plan and plans after lower feeds: random programs, random places, limits at every
-// servo sample.
+// Stops from a moving plan, and plans after feeds were lowered: random programs, random positions, limits at
+// every servo sample.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace mw::trajectory::profile {
 namespace {
 
-/// The whole curve of a program, its feeds, and how the feeds are changed.
+/// The whole curve of a program with its feeds, which can be scaled.
 struct Part {
     test::Program program;
     curve::CurveBuilder builder{3.0};
@@ -53,16 +53,16 @@ struct Part {
         const std::size_t span = span_at(builder.spans(), s);
         return curve::point_at(builder.spans()[span], s);
     }
-    /// The maximum speed along the curve by the limits of speed.
+    /// Maximum speed along the curve within the speed limits.
     double limit_at(double s) const {
         const CurvePoint p = point(s);
-        // At the joint of two moves either one's.
+        // At the end of a move, the limit of either move is accepted.
         return 1 / std::min(speed_share(run, p, run.feed_at(s - 1e-9)),
                             speed_share(run, p, run.feed_at(s + 1e-9)));
     }
 };
 
-/// Place and speed at a time of cells.
+/// Position and speed at a time of the cells.
 struct Reading {
     double s = 0, v = 0;
 };
@@ -82,8 +82,8 @@ std::vector<Reading> readings_of(const std::vector<TimeCell> &cells, double step
     return out;
 }
 
-/// Worst ratio to the limits of acceleration and jerk by differences of the samples, a few of them at rest at
-/// the end. What rounding makes of the differences does not count.
+/// Maximum ratio to the acceleration and jerk limits from differences of the samples, with some samples at
+/// standstill at the end. Rounding errors of the differences are subtracted.
 struct Worst {
     double acceleration = 0, jerk = 0;
 };
@@ -120,7 +120,7 @@ Worst worst_of(const Part &part, const std::vector<Reading> &readings, bool ends
     return worst;
 }
 
-/// What a limit of |p + x q| leaves for x; the whole of it if there is none.
+/// The range of x for a limit of |p + x q|; unlimited without limits.
 struct Band {
     double low = -1e300, high = 1e300;
     void meet(double p, double q, double limit) {
@@ -133,7 +133,7 @@ struct Band {
     }
 };
 
-/// Jerk and acceleration that all limits leave at a place; the norm's as if it were along the path.
+/// Permitted ranges of jerk and acceleration at a position. The norm counts as if it were along the path.
 void bands_at(const Part &part, const Reading &at, double a, Band &acceleration, Band &jerk) {
     const CurvePoint p = part.point(at.s);
     const double v = at.v;
@@ -150,7 +150,7 @@ void bands_at(const Part &part, const Reading &at, double a, Band &acceleration,
     jerk.meet(0, n, b.jerk + drift);
 }
 
-/// True if the norm over XYZ nearly keeps its limits.
+/// True if the XYZ norm is within 1.02 times its limits.
 bool keepsNorm(const Part &part, const Reading &at, double a, double j) {
     constexpr double ROOM = 1.02;
     const CurvePoint p = part.point(at.s);
@@ -165,8 +165,8 @@ struct Least {
     bool can_be_driven = true;
 };
 
-/// Braking as hard as the limits allow at each moment, without looking ahead. If that can be driven, no stop
-/// is much sooner.
+/// Brakes with the limits at each instant, without looking ahead. If this motion is possible, no stop is much
+/// shorter.
 Least least_stop(const Part &part, Reading at, double a) {
     constexpr double STEP = 5e-5;
     Least least;
@@ -200,7 +200,7 @@ void expect_within(const Part &part, const std::vector<Reading> &readings, bool 
     }
 }
 
-/// The speed at s by the readings.
+/// The speed at s, interpolated between the readings.
 double speed_at(const std::vector<Reading> &readings, double s) {
     const auto next = std::lower_bound(readings.begin(), readings.end(), s,
                                        [](const Reading &r, double x) { return r.s < x; });
@@ -257,7 +257,7 @@ struct Ride {
         is_done = is_at_end && stopped_s > part.builder.final_s() - 1e-9;
         profile.drop(k);
     }
-    /// From the start of the cell `fixed` to the end of a stop.
+    /// Time from the start of the cell `fixed` to the end of a stop [s].
     double time_of(const Stop &stop, std::size_t fixed) const {
         double t = duration_of(stop.cells);
         for (std::size_t k = fixed; k < stop.kept; ++k) {
@@ -278,7 +278,7 @@ struct Ride {
         rapid = std::min(1.0, rapid * rapid_part);
         part.scale(feed, rapid);
     }
-    /// What was driven since the last time, with some cells before.
+    /// Checks the motion since the last call, with some cells before it.
     void check_driven() {
         constexpr std::size_t BEFORE = 40;
         constexpr double BETWEEN_PLACES = 0.05;
@@ -305,7 +305,7 @@ void check_stop(const Ride &ride, const Stop &stop, const char *what) {
     EXPECT_NEAR(last.s_at(last.duration), stop.end_s, 1e-12 * std::max(1.0, stop.end_s)) << what;
 }
 
-/// Drives a random program with what `act` does before each part of 50 ms is taken.
+/// Runs a random program. `act` is called before each part of 50 ms.
 template <typename Act>
 int drive_seeds(int preset, const Act &act) {
     const auto [first, count] = testing::campaign_seeds(preset);

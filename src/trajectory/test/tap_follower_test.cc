@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A tap alone, with a spindle that has inertia and an encoder: judged by the rotor's true angle.
+// Tests of a tap with a simulated spindle that has inertia and an encoder, checked with the true angle of the
+// rotor.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,9 +21,9 @@ struct Tapping {
     SpindleTrack track;
     TapFollower tap;
     double rps, ramp;
-    double phase = NAN;   ///< of the helix by the rotor's true angle [turns]
-    double farthest = 0;  ///< from it while the tool follows [turns]
-    double deepest = 0;   ///< x
+    double phase = NAN;   ///< phase of the helix by the true angle of the rotor [rev]
+    double farthest = 0;  ///< maximum distance from the helix while the tool follows [rev]
+    double deepest = 0;   ///< maximum x
     double highest_v = 0, highest_a = 0, highest_j = 0;
 
     Tapping(double speed, double drive_ramp, int counts = 4096)
@@ -46,7 +47,7 @@ struct Tapping {
         const SpindleBraking braking{0, known_ramp};
         return {track.turns(), track.turns_per_s(), track.turns_per_s2(), {braking, braking}, track.step()};
     }
-    /// Until it is over; `on_cycle` may stop it.
+    /// Runs the tap to its end. `on_cycle` may stop it.
     template <class OnCycle>
     bool run(double known_ramp, const TapTerms &terms, OnCycle on_cycle) {
         tap.begin(terms, reading(known_ramp), T);
@@ -69,7 +70,7 @@ struct Tapping {
             turn(tap.spindle_factor() * rps);
             const bool isFollowing =
                 p == TapPhase::IN || p == TapPhase::TURNING || p == TapPhase::BACK || p == TapPhase::LEAVING;
-            // Judged from a few cycles after it has met the helix.
+            // The phase is measured a few cycles after the tool has reached the helix.
             if (isFollowing && wasFollowing && tap.x() > 4 && std::isnan(phase)) {
                 phase = std::copysign(1.0, rps) * plant.turns() - tap.x() / PITCH;
             }
@@ -139,7 +140,7 @@ TEST(TapFollower, WithAnyEncoderKeepsToTheAngle) {
     }
 }
 
-/// A reversal reverses the backlash of the drive too: a spindle that returns from above stops there at once.
+/// A reversal would include the backlash of the drive, so the tool must not reverse at the start.
 TEST(TapFollower, TheWayHomeEndsWithoutTurningBack) {
     for (int n = 0; n < 60; ++n) {
         SCOPED_TRACE(n);
@@ -201,7 +202,7 @@ TEST(TapFollower, ASpindleThatDoesNotTurnBackIsLostWithinTheRoom) {
         EXPECT_LE(std::abs(v - last_v) / T, 1000 * (1 + 1e-9));
         last_x = tapping.tap.x();
         last_v = v;
-        tapping.turn(10);  // regardless of the command
+        tapping.turn(10);  // the spindle rotates without a command
     }
     EXPECT_TRUE(tapping.tap.isOver());
     EXPECT_TRUE(tapping.tap.isLost());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A machine whose joints run on curves where paths are straight, for tests.
+// A machine whose joints move along curves where the path is straight, for tests.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace mw::trajectory::test {
 
-/// A table that turns about Z by the angle of C, its axis at -centre_mm in X, below a tool that moves over X
-/// Y Z.
+/// A table that rotates about Z by the angle of C, with its centre at -centre_mm in X, below a tool that
+/// moves in X Y Z.
 class TurningTable final : public JointMap {
   public:
     explicit TurningTable(double centre_mm = 0) noexcept : centre_mm_(centre_mm) {}
