@@ -20,7 +20,7 @@ struct Stop {
 };
 
 enum class StopEffort : std::uint8_t {
-    QUICK,   ///< a direct stop from the first cell from whose end it keeps all limits
+    QUICK,   ///< along the plan, then the first direct stop within all limits
     PROMPT,  ///< for the stops of every plan: QUICK if it takes little longer than the shortest stop
     SOONEST  ///< the slowest motion, then the direct stop that ends first
 };
