@@ -9,7 +9,7 @@
 namespace mw::motion {
 namespace {
 
-TEST(Allocation, TablesOfScrewErrorsAreLoadedAndFollowedWithoutTheHeap) {
+TEST(Allocation, ScrewTablesAreLoadedAndUsedWithoutAllocation) {
     testing::MotionRig rig;
     std::uint64_t calls = 1;
     constexpr int COUNT = 600;
@@ -34,7 +34,7 @@ TEST(Allocation, TablesOfScrewErrorsAreLoadedAndFollowedWithoutTheHeap) {
 }
 
 /// The planner thread makes the curves, and allocates.
-TEST(Allocation, ServoCyclesOfAPathDoNotTouchTheHeap) {
+TEST(Allocation, ServoCyclesOfAPathDoNotAllocate) {
     testing::MotionRig rig;
     rig.ready();
     for (int i = 1; i < 200; ++i) {
@@ -73,7 +73,7 @@ TEST(Allocation, ServoCyclesOfAPathDoNotTouchTheHeap) {
     EXPECT_GT(rig.out->joint[0].motor_pos_cmd, 20);
 }
 
-TEST(Allocation, ThreadsDoNotTouchTheHeap) {
+TEST(Allocation, ThreadsDoNotAllocate) {
     testing::MotionRig rig("XZ");
     rig.ready();
     rig.send(SpindleOn{0, 600});
@@ -104,7 +104,7 @@ TEST(Allocation, ThreadsDoNotTouchTheHeap) {
     EXPECT_EQ(rig.out->joint[1].motor_pos_cmd, -20);
 }
 
-TEST(Allocation, AxisJogsOfATableDoNotTouchTheHeap) {
+TEST(Allocation, AxisJogsOfATableDoNotAllocate) {
     kinematics::RotaryTable table;
     testing::MotionRig rig(table, 5, 100, 1000);
     rig.ready(Mode::TELEOP);

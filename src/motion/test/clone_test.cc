@@ -100,7 +100,7 @@ TEST(Clone, GivesTheSameSamplesInJogs) {
     judge(Mode::FREE, 0, [](MotionRig &rig) { rig.send(JogContinuous{{true, 1}, -30}); });
 }
 
-TEST(Clone, WhatItIsToldTheOtherDoesNotHear) {
+TEST(Clone, CommandsToTheCloneDoNotReachTheOriginal) {
     MotionRig rig;
     rig.ready();
     path(rig);

@@ -286,7 +286,7 @@ std::string page() {
     return text.str();
 }
 
-TEST(Commands, AreTakenOrRefusedAsThePageSays) {
+TEST(Commands, AreAcceptedOrRejectedAsThePageDocuments) {
     const std::string made = table();
     EXPECT_EQ(made.find("no answer"), std::string::npos);
     EXPECT_NE(page().find(made), std::string::npos) << "docs/developer/motion_commands.md should have this:\n"
@@ -294,7 +294,7 @@ TEST(Commands, AreTakenOrRefusedAsThePageSays) {
 }
 
 /// A value that is not a number is rejected even if all else is valid; the current motion does not change.
-TEST(Commands, AValueThatIsNoNumberIsRefused) {
+TEST(Commands, ANonFiniteValueIsRejected) {
     const double nan = std::nan("");
     const geometry::Pose far = at(1, nan);
     const auto line = [](auto spoil) {
@@ -375,7 +375,7 @@ TEST(Commands, AValueThatIsNoNumberIsRefused) {
 }
 
 /// A value that is not finite is not a number, with either sign.
-TEST(Commands, APitchScaleThatIsNoNumberIsToldAsSuch) {
+TEST(Commands, ANonFinitePitchScaleIsReported) {
     for (const double scale : {std::nan(""), std::numeric_limits<double>::infinity()}) {
         EXPECT_EQ(
             result_of({"", "", PathBody{RigidTap{at(PATH_END, 0, -2), scale, tapping()}}}, Situation::COORD),
@@ -385,7 +385,7 @@ TEST(Commands, APitchScaleThatIsNoNumberIsToldAsSuch) {
 }
 
 /// The planner runs only every few cycles: by then the last move may have ended and its path may be dropped.
-TEST(Commands, AMoveThatWasOverBeforeAStopIsDone) {
+TEST(Commands, AMoveThatEndedBeforeAStopIsDone) {
     for (const bool isOver : {true, false}) {
         MotionRig rig;
         rig.ready(Mode::COORD);

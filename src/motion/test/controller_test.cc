@@ -17,7 +17,7 @@ geometry::Pose at(double x, double y = 0, double z = 0) {
     return p;
 }
 
-TEST(Controller, ALineGoesThroughPlannerAndControllerToTheMotors) {
+TEST(Controller, ALineMovesTheMotorsThroughPlannerAndController) {
     MotionRig rig;
     rig.ready();
     ASSERT_TRUE(rig.status().isAllHomed);
@@ -34,7 +34,7 @@ TEST(Controller, ALineGoesThroughPlannerAndControllerToTheMotors) {
     EXPECT_EQ(rig.status().last_path_id, flush);
 }
 
-TEST(Controller, EnableTakesTheCommandFromFeedback) {
+TEST(Controller, EnablingSetsTheCommandToTheFeedback) {
     MotionRig rig;
     rig.in.joint[0].motor_pos_fb = 12.5;
     rig.step();
@@ -44,7 +44,7 @@ TEST(Controller, EnableTakesTheCommandFromFeedback) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 12.5);
 }
 
-TEST(Controller, AnAxisWhoseJointTheMachineDoesNotHaveIsNotJogged) {
+TEST(Controller, AnAxisWithoutAJointIsNotJogged) {
     kinematics::Trivial kinematics;
     ASSERT_TRUE(kinematics.configure("XYZABCUVW"));
     MotionRig rig(kinematics, 3, 100, 1000);
@@ -57,7 +57,7 @@ TEST(Controller, AnAxisWhoseJointTheMachineDoesNotHaveIsNotJogged) {
     EXPECT_EQ(rig.status().carte_pos_cmd[geometry::AXIS_A], 0);
 }
 
-TEST(Controller, EnableInputFalseDropsTheAmplifiersInThatCycle) {
+TEST(Controller, EnableInputFalseDisablesTheAmplifiersInTheSameCycle) {
     MotionRig rig;
     rig.ready();
     rig.line(at(100));
@@ -75,7 +75,7 @@ TEST(Controller, EnableInputFalseDropsTheAmplifiersInThatCycle) {
     EXPECT_EQ(rig.refusal(enable), Reason::EXTERNAL_ENABLE_OFF);
 }
 
-TEST(Controller, AFeedbackThatIsNoNumberDropsTheAmplifiersInThatCycle) {
+TEST(Controller, ANonFiniteFeedbackDisablesTheAmplifiersInTheSameCycle) {
     for (const double feedback : {std::nan(""), HUGE_VAL}) {
         MotionRig rig;
         rig.ready();
@@ -106,7 +106,7 @@ TEST(Controller, AFeedbackThatIsNoNumberDropsTheAmplifiersInThatCycle) {
     }
 }
 
-TEST(Controller, AbortStopsOnThePathWithinLimitsAndMakesOldCommandsStale) {
+TEST(Controller, AbortStopsOnThePathWithinLimitsAndRejectsOlderCommands) {
     MotionRig rig;
     rig.ready();
     std::vector<CommandId> ids;
@@ -137,7 +137,7 @@ TEST(Controller, AbortStopsOnThePathWithinLimitsAndMakesOldCommandsStale) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 1.0);
 }
 
-TEST(Controller, AnAbortStopsWithoutThePlannerToo) {
+TEST(Controller, AnAbortStopsWithoutThePlanner) {
     for (const bool isJerkLimited : {false, true}) {
         MotionRig rig;
         for (int j = 0; j < 3; ++j) {
@@ -182,7 +182,7 @@ TEST(Controller, AnAbortStopsWithoutThePlannerToo) {
     }
 }
 
-TEST(Controller, ModeChangesWhileMovingAreRefused) {
+TEST(Controller, ModeChangesWhileMovingAreRejected) {
     MotionRig rig;
     rig.ready();
     rig.line(at(50));
@@ -232,7 +232,7 @@ TEST(Controller, StepStopsAtEachBlock) {
     }
 }
 
-TEST(Controller, MovesBeyondSoftLimitsAreRefusedBeforeTheyBegin) {
+TEST(Controller, MovesOutsideSoftLimitsAreRejectedBeforeTheyBegin) {
     MotionRig rig;
     rig.set(Parameter::JOINT_MAX_LIMIT, 0, 20);
     rig.ready();
@@ -279,7 +279,7 @@ TEST(Controller, IncrementalJogsAddUpAndStopAtTheLimit) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 20.0);
 }
 
-TEST(Controller, EachOfThePinsAgainstJogsRefusesThem) {
+TEST(Controller, EachJogInhibitPinRejectsJogs) {
     for (bool Inputs::*pin : {&Inputs::isJogInhibited, &Inputs::isJogStopped, &Inputs::isJogStoppedNow}) {
         for (const bool isJoint : {true, false}) {
             MotionRig rig;
@@ -299,7 +299,7 @@ TEST(Controller, EachOfThePinsAgainstJogsRefusesThem) {
     }
 }
 
-TEST(Controller, OutputsWithoutAMoveComeOnAfterAMoveThatWasDropped) {
+TEST(Controller, OutputsWithoutAMoveSwitchOnAfterADroppedMove) {
     MotionRig rig;
     rig.ready();
     rig.line(at(50));
@@ -330,7 +330,7 @@ TEST(Controller, TeleopJogsAnAxisOfAGantry) {
     EXPECT_EQ(rig.refusal(wrong), Reason::WRONG_MODE);
 }
 
-TEST(Controller, FollowingErrorDropsTheAmplifiers) {
+TEST(Controller, FollowingErrorDisablesTheAmplifiers) {
     MotionRig rig;
     rig.set(Parameter::JOINT_FERROR, 0, 0.5);
     rig.set(Parameter::JOINT_MIN_FERROR, 0, 0.1);
@@ -347,7 +347,7 @@ TEST(Controller, FollowingErrorDropsTheAmplifiers) {
     EXPECT_EQ(rig.faults.size(), 1U);
 }
 
-TEST(Controller, TaskLostBrakesAlongThePathThenDropsTheAmplifiers) {
+TEST(Controller, LossOfTaskBrakesAlongThePathThenDisablesTheAmplifiers) {
     MotionRig rig;
     rig.ready();
     rig.line(at(100, 50), 80);
@@ -371,7 +371,7 @@ TEST(Controller, TaskLostBrakesAlongThePathThenDropsTheAmplifiers) {
     EXPECT_TRUE(rig.status().isTaskLost);
 }
 
-TEST(Controller, ProbeStopsWhereItTripsAndAnswersDone) {
+TEST(Controller, ProbeStopsAfterItTripsAndReportsDone) {
     MotionRig rig;
     rig.ready();
     Probe probe;
@@ -392,7 +392,7 @@ TEST(Controller, ProbeStopsWhereItTripsAndAnswersDone) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Controller, AProbeThatTripsWhileItBrakesToItsEndHasTripped) {
+TEST(Controller, AProbeThatTripsWhileBrakingToTheEndHasTripped) {
     for (const bool isJerkLimited : {false, true}) {
         for (double before = 0.05; before < 8; before *= 1.3) {
             SCOPED_TRACE(before);
@@ -421,7 +421,7 @@ TEST(Controller, AProbeThatTripsWhileItBrakesToItsEndHasTripped) {
     }
 }
 
-TEST(Controller, ProbeThatMustTripAndDoesNotIsAFault) {
+TEST(Controller, AMissingProbeContactIsAFault) {
     for (const bool isAway : {false, true}) {
         MotionRig rig;
         rig.ready();
@@ -439,7 +439,7 @@ TEST(Controller, ProbeThatMustTripAndDoesNotIsAFault) {
     }
 }
 
-TEST(Controller, SynchedOutputsChangeWhereThePathPasses) {
+TEST(Controller, SynchronizedOutputsChangeAtTheirPointOfThePath) {
     MotionRig rig;
     rig.ready();
     rig.line(at(10), 50, PathMode::EXACT_STOP);
@@ -456,7 +456,7 @@ TEST(Controller, SynchedOutputsChangeWhereThePathPasses) {
     EXPECT_NEAR(x, 10.0, 0.01);
 }
 
-TEST(Controller, HardLimitStopsWithinLimitsThenDropsAmplifiersAndOverrideEndsWithTheNextJog) {
+TEST(Controller, HardLimitStopsWithinLimitsThenDisablesAmplifiersAndOverrideEndsWithTheNextJog) {
     MotionRig rig;
     rig.ready(Mode::FREE);
     rig.send(JogContinuous{{true, 0}, 50});

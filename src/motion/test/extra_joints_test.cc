@@ -50,7 +50,7 @@ struct ExtraRig {
     void check() const { EXPECT_TRUE(judge.isWithin()) << judge.report(); }
 };
 
-TEST(ExtraJoints, ThePinMovesAJointFromHomingOnAndNotBefore) {
+TEST(ExtraJoints, ThePinMovesAJointOnlyAfterHoming) {
     ExtraRig r;
     r.pin() = 5;
     r.rig.send(Enable{});
@@ -77,7 +77,7 @@ TEST(ExtraJoints, ThePinMovesAJointFromHomingOnAndNotBefore) {
     r.check();
 }
 
-TEST(ExtraJoints, APinThatJumpsDoesNotMakeTheMotorJump) {
+TEST(ExtraJoints, AJumpOfThePinDoesNotMakeTheMotorJump) {
     for (unsigned seed = 1; seed <= 40; ++seed) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> part(0, 1);
@@ -99,7 +99,7 @@ TEST(ExtraJoints, APinThatJumpsDoesNotMakeTheMotorJump) {
     }
 }
 
-TEST(ExtraJoints, JerkLimitsHoldWhereThereAreAny) {
+TEST(ExtraJoints, JerkLimitsAreKept) {
     ExtraRig r;
     r.judge = testing::LimitChecker({{50, 500, 10000}}, MotionRig::T, 1e-5);
     r.rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, 1);
@@ -116,7 +116,7 @@ TEST(ExtraJoints, JerkLimitsHoldWhereThereAreAny) {
     r.check();
 }
 
-TEST(ExtraJoints, ItStopsAtItsSoftLimitWithoutOvershootAndThatIsToldOnce) {
+TEST(ExtraJoints, TheJointStopsAtItsSoftLimitWithoutOvershootAndReportsItOnce) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     for (int n = 0; n < 2000; ++n) {
@@ -134,7 +134,7 @@ TEST(ExtraJoints, ItStopsAtItsSoftLimitWithoutOvershootAndThatIsToldOnce) {
     r.check();
 }
 
-TEST(ExtraJoints, APinThatAsksForTooMuchWhenItTakesOverIsTold) {
+TEST(ExtraJoints, APinOutsideTheLimitsAtTheStartIsReported) {
     ExtraRig r;
     r.pin() = 30;
     r.rig.ready(Mode::FREE);
@@ -152,7 +152,7 @@ TEST(ExtraJoints, APinThatAsksForTooMuchWhenItTakesOverIsTold) {
     r.check();
 }
 
-TEST(ExtraJoints, APinThatIsNoNumberIsAFaultNotAMotion) {
+TEST(ExtraJoints, ANonFinitePinIsAFaultWithoutMotion) {
     for (const double nonsense :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         ExtraRig r;
@@ -171,7 +171,7 @@ TEST(ExtraJoints, APinThatIsNoNumberIsAFaultNotAMotion) {
     }
 }
 
-TEST(ExtraJoints, AfterAnAbortNothingMovesUntilThePinHasSettledAndChanges) {
+TEST(ExtraJoints, AfterAnAbortNothingMovesUntilTheSettledPinChanges) {
     ExtraRig r;
     r.rig.ready(Mode::COORD);
     r.pin() = 10;
@@ -217,7 +217,7 @@ TEST(ExtraJoints, SwitchingOnMovesNothingUntilThePinChanges) {
     r.check();
 }
 
-TEST(ExtraJoints, PushedByHandWhileOffItStaysWhereItWasPushedTo) {
+TEST(ExtraJoints, AJointMovedByHandWhileOffStaysThere) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     r.pin() = 10;
@@ -238,7 +238,7 @@ TEST(ExtraJoints, PushedByHandWhileOffItStaysWhereItWasPushedTo) {
 }
 
 /// joint.N.vel-cmd and acc-cmd are the derivatives of the motor command.
-TEST(ExtraJoints, ItsCommandedAccelerationIsThatOfItsMotion) {
+TEST(ExtraJoints, TheCommandedAccelerationIsThatOfTheMotion) {
     for (const Mode mode : {Mode::FREE, Mode::TELEOP}) {
         ExtraRig r;
         r.rig.ready(mode);
@@ -254,7 +254,7 @@ TEST(ExtraJoints, ItsCommandedAccelerationIsThatOfItsMotion) {
     }
 }
 
-TEST(ExtraJoints, EveryStopBrakesItWithinItsLimitsBeforeTheMachineGoesOff) {
+TEST(ExtraJoints, EveryStopBrakesThemWithinLimitsBeforeTheMachineIsOff) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     r.pin() = 15;
@@ -269,7 +269,7 @@ TEST(ExtraJoints, EveryStopBrakesItWithinItsLimitsBeforeTheMachineGoesOff) {
     r.check();
 }
 
-TEST(ExtraJoints, AHomedOneIsNeitherJoggedNorUnhomedWhileTheMachineIsOn) {
+TEST(ExtraJoints, AHomedJointIsNeitherJoggedNorUnhomedWhileTheMachineIsOn) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     const CommandId jog = r.rig.send(JogContinuous{{true, EXTRA}, 5});
@@ -297,7 +297,7 @@ TEST(ExtraJoints, AHomedOneIsNeitherJoggedNorUnhomedWhileTheMachineIsOn) {
     r.check();
 }
 
-TEST(ExtraJoints, HomingItAgainBrakesItFirst) {
+TEST(ExtraJoints, HomingAgainBrakesTheJointFirst) {
     ExtraRig r;
     r.rig.set(Parameter::JOINT_HOME, EXTRA, 4);
     r.rig.ready(Mode::FREE);
@@ -314,7 +314,7 @@ TEST(ExtraJoints, HomingItAgainBrakesItFirst) {
     r.check();
 }
 
-TEST(ExtraJoints, ProgramsAndJogsOfAxesKnowNothingOfIt) {
+TEST(ExtraJoints, ProgramsAndAxisJogsDoNotMoveThem) {
     ExtraRig r;
     r.rig.ready(Mode::COORD);
     r.pin() = 10;
@@ -334,7 +334,7 @@ TEST(ExtraJoints, ProgramsAndJogsOfAxesKnowNothingOfIt) {
     EXPECT_EQ(r.rig.status().carte_pos_cmd[0], 5);
 }
 
-TEST(ExtraJoints, AfterHomingItsFeedbackIsNotWatched) {
+TEST(ExtraJoints, AfterHomingTheFeedbackIsNotChecked) {
     ExtraRig r;
     r.rig.set(Parameter::JOINT_MIN_FERROR, EXTRA, 0.1);
     r.rig.set(Parameter::JOINT_FERROR, EXTRA, 0.1);
@@ -349,7 +349,7 @@ TEST(ExtraJoints, AfterHomingItsFeedbackIsNotWatched) {
     EXPECT_FALSE(r.rig.status().isEnabled) << "its amplifier is";
 }
 
-TEST(ExtraJoints, OneLeftOutStaysWhereItIs) {
+TEST(ExtraJoints, AnInactiveJointDoesNotMove) {
     ExtraRig r;
     r.rig.ready(Mode::FREE);
     r.rig.send(SetJointActive{EXTRA, false});
@@ -363,7 +363,7 @@ TEST(ExtraJoints, OneLeftOutStaysWhereItIs) {
     r.check();
 }
 
-TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse) {
+TEST(ExtraJoints, AreTheLastJointsAndRemainActive) {
     ExtraRig r;
     for (const int count : {3, 2, 5}) {
         const CommandId id = r.rig.send(SetNumJoints{count});
@@ -376,7 +376,7 @@ TEST(ExtraJoints, TheyAreTheLastOnesAndStayInUse) {
 }
 
 /// A joint too many would not exist.
-TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside) {
+TEST(ExtraJoints, SwitchingOnEnablesOnlyThem) {
     ExtraJoints extra;
     extra.use_joints(2, 3);
     const std::array<JointInputs, MAX_JOINTS> pins{};
@@ -388,7 +388,7 @@ TEST(ExtraJoints, SwitchingOnReadiesThemAndNoneBeside) {
     }
 }
 
-TEST(ExtraJoints, AlsoOnMachinesWhoseJointsAreNotAxes) {
+TEST(ExtraJoints, WorkOnMachinesWhoseJointsAreNotAxes) {
     const kinematics::CoreXy corexy;
     MotionRig rig(corexy, 4, 100, 1000, 1);
     rig.ready(Mode::COORD);

@@ -50,7 +50,7 @@ struct GantryRig : testing::MotionRig {
     testing::LimitChecker checker{std::vector<testing::AxisLimit>(4, {SIDE_VELOCITY, SIDE_ACCELERATION}), T};
 };
 
-TEST(GantrySides, ALittleApartTheyAreLedTogetherWithoutAStep) {
+TEST(GantrySides, ASmallSkewIsAlignedWithoutAStep) {
     for (const double sag : {0.4, -0.4, 0.001}) {
         GantryRig rig;
         rig.sag(sag);
@@ -73,7 +73,7 @@ TEST(GantrySides, ALittleApartTheyAreLedTogetherWithoutAStep) {
     }
 }
 
-TEST(GantrySides, APinThatEnablesOffsetsAsksForNoMotionTheCountsDo) {
+TEST(GantrySides, OffsetCountsMoveTheAxisNotTheEnablePin) {
     GantryRig rig;
     rig.set(Parameter::AXIS_OFFSET_RATIO, 0, 0.3);
     rig.in.axis_offset[0].isEnabled = true;
@@ -94,7 +94,7 @@ TEST(GantrySides, APinThatEnablesOffsetsAsksForNoMotionTheCountsDo) {
     EXPECT_EQ(rig.checker.report(), "");
 }
 
-TEST(GantrySides, FarApartTheyAreSwitchedOnInJointModeWhereTheyStand) {
+TEST(GantrySides, ALargeSkewSwitchesOnInJointModeWithoutMotion) {
     GantryRig rig;
     rig.sag(1.9);
     rig.watch(3);
@@ -124,7 +124,7 @@ TEST(GantrySides, FarApartTheyAreSwitchedOnInJointModeWhereTheyStand) {
     EXPECT_EQ(rig.checker.report(), "");
 }
 
-TEST(GantrySides, AStopOnTheWayEndsInJointMode) {
+TEST(GantrySides, AStopDuringAlignmentEndsInJointMode) {
     GantryRig rig;
     rig.sag(0.4);
     rig.watch(3);
@@ -157,7 +157,7 @@ TEST(GantrySides, AStopOnTheWayEndsInJointMode) {
     EXPECT_EQ(failed.checker.report(), "");
 }
 
-TEST(GantrySides, AJogWaitsUntilTheyAreTogether) {
+TEST(GantrySides, AJogWaitsUntilTheSidesAreAligned) {
     GantryRig rig;
     rig.send(SetMode{Mode::TELEOP});
     rig.step(3);
@@ -173,7 +173,7 @@ TEST(GantrySides, AJogWaitsUntilTheyAreTogether) {
     EXPECT_EQ(rig.checker.report(), "");
 }
 
-TEST(GantrySides, HomedAgainTheMachineWorksAsBefore) {
+TEST(GantrySides, TheMachineWorksAfterHomingAgain) {
     GantryRig rig;
     geometry::Pose end;
     end[1] = 20;

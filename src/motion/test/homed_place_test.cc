@@ -34,7 +34,7 @@ class ShortSighted final : public kinematics::Kinematics {
     }
 };
 
-TEST(HomedPlace, WhatWasLostIsFoundFromTheFirstPlaceAfterHoming) {
+TEST(HomedPlace, ThePoseIsFoundFromTheFirstPositionAfterHoming) {
     ShortSighted kinematics;
     MotionRig rig{kinematics, 3, 100, 1000};
     for (int j = 0; j < 3; ++j) {

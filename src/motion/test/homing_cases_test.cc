@@ -18,7 +18,7 @@ namespace {
 using ::mw::testing::HomingRig;
 using ::mw::testing::MotionRig;
 
-TEST(HomingCases, AnIndexCountsWithASwitchOrWithoutAndWhetherItResetsTheEncoderOrNot) {
+TEST(HomingCases, AnIndexWorksWithAndWithoutASwitchAndEncoderReset) {
     for (const bool isReset : {true, false}) {
         for (const double search : {0.0, -20.0}) {
             HomingRig m;
@@ -43,7 +43,7 @@ TEST(HomingCases, AnIndexCountsWithASwitchOrWithoutAndWhetherItResetsTheEncoderO
     }
 }
 
-TEST(HomingCases, TheMotorDoesNotStepWhereTheIndexResetsItsEncoder) {
+TEST(HomingCases, TheMotorDoesNotStepWhenTheIndexResetsItsEncoder) {
     for (const double lag_s : {0.0, 0.01}) {
         for (const double phase : {1.25, -17.3, 3.0004}) {
             HomingRig m;
@@ -65,7 +65,7 @@ TEST(HomingCases, TheMotorDoesNotStepWhereTheIndexResetsItsEncoder) {
     }
 }
 
-TEST(HomingCases, NorDoesItWhenHomingIsAbortedInThatVeryCycle) {
+TEST(HomingCases, TheMotorDoesNotStepWhenHomingIsAbortedInTheIndexCycle) {
     const auto made = [](HomingRig &m) {
         m.set_up({{.start = 3, .switch_at = -20, .index_pitch = 5, .index_phase = 1.25}});
         m.set(Parameter::JOINT_HOME_USE_INDEX, 1);
@@ -96,7 +96,7 @@ TEST(HomingCases, NorDoesItWhenHomingIsAbortedInThatVeryCycle) {
     }
 }
 
-TEST(HomingCases, AbsoluteEncodersAndImmediateTakeThePlaceWhereTheyStand) {
+TEST(HomingCases, AbsoluteEncodersAndImmediateHomingUseTheCurrentPosition) {
     for (const int mode : {0, 1, 2}) {
         HomingRig m;
         m.set_up({{.start = 3}});
@@ -117,7 +117,7 @@ TEST(HomingCases, AbsoluteEncodersAndImmediateTakeThePlaceWhereTheyStand) {
     }
 }
 
-TEST(HomingCases, ALimitSwitchIsToldOfTheJointThatHitIt) {
+TEST(HomingCases, ALimitSwitchIsReportedForTheJointThatHitIt) {
     HomingRig m;
     m.set_up({{.start = 0}, {.start = 0}});
     m.set_switch(0, -10, 1);
@@ -163,7 +163,7 @@ TEST(HomingCases, OnlyTheFinalMoveKeepsAJerkLimit) {
     EXPECT_GT(final_move.worst_jerk(), 0.9);
 }
 
-TEST(HomingCases, ASwitchThatClosesAgainWhileStoppingIsNoZero) {
+TEST(HomingCases, ASwitchThatClosesAgainWhileStoppingIsNotTheHomeEdge) {
     HomingRig m;
     m.set_up({{.start = 0, .switch_at = -5}});
     m.set_switch(0, -10, -1);
@@ -180,7 +180,7 @@ TEST(HomingCases, ASwitchThatClosesAgainWhileStoppingIsNoZero) {
 
 /// A slow search stops right behind the opening edge. Without a longer retract, the closing edge would be
 /// reached while backlash is being compensated.
-TEST(HomingCases, ALatchInTheDirectionOfTheSearchBeginsSoFarOffThatPlayIsTakenUpAtTheEdge) {
+TEST(HomingCases, ALatchInTheSearchDirectionStartsFarEnoughToCompensateBacklash) {
     for (const double play : {0.1, 0.5, 2.0}) {
         for (const double latch : {1.0, 5.0, 20.0}) {
             for (const bool isJerkLimited : {false, true}) {
@@ -204,7 +204,7 @@ TEST(HomingCases, ALatchInTheDirectionOfTheSearchBeginsSoFarOffThatPlayIsTakenUp
     }
 }
 
-TEST(HomingCases, InhibitKeepsHomingFromBeginningAndStopsNothing) {
+TEST(HomingCases, InhibitPreventsTheStartOfHomingAndStopsNothing) {
     HomingRig m;
     m.set_up({{.start = 0}});
     m.rig.send(Enable{});
@@ -229,7 +229,7 @@ TEST(HomingCases, InhibitKeepsHomingFromBeginningAndStopsNothing) {
     EXPECT_EQ(m.rig.refusal(id), Reason::HOMING_INHIBITED);
 }
 
-TEST(HomingCases, AJointThatIsLeftOutIsNotHomed) {
+TEST(HomingCases, AnInactiveJointIsNotHomed) {
     HomingRig m;
     m.rig.send(SetJointActive{1, false});
     m.rig.step(2);
@@ -279,7 +279,7 @@ TEST(HomingCases, ALockingIndexerUnlocksBeforeItHomesAndLocksAfterwards) {
     EXPECT_FALSE(i.hasMovedLocked);
 }
 
-TEST(HomingCases, AnIndexerThatDoesNotUnlockOrLockIsToldOf) {
+TEST(HomingCases, AnIndexerThatDoesNotUnlockOrLockIsReported) {
     for (const bool isStuckLocked : {true, false}) {
         Indexer i;
         i.isObedient = !isStuckLocked;
@@ -298,7 +298,7 @@ TEST(HomingCases, AnIndexerThatDoesNotUnlockOrLockIsToldOf) {
     }
 }
 
-TEST(HomingCases, AnAbortedIndexerLocksWhenItStandsAndSwitchedOffAtOnce) {
+TEST(HomingCases, AnAbortedIndexerLocksAtStandstillAndAtOnceIfSwitchedOff) {
     for (const bool isOff : {false, true}) {
         Indexer i;
         i.m.home(0);
@@ -312,7 +312,7 @@ TEST(HomingCases, AnAbortedIndexerLocksWhenItStandsAndSwitchedOffAtOnce) {
     }
 }
 
-TEST(HomingCases, AModuleIsAskedForMovesInCyclesInWhichItHasWorkAndInNoOther) {
+TEST(HomingCases, AModuleIsCalledForMovesOnlyInCyclesWithWork) {
     ForeignModule module;
     MotionRig rig;
     rig.controller = std::make_unique<Controller>(ControllerConfig{3, 1, 4, 4, MotionRig::T, 0, &module},

@@ -242,7 +242,7 @@ struct Judge {
     }
 };
 
-TEST(HomingJudge, RandomJointsAreHomedToTheirTrueZeroOrSayWhyNot) {
+TEST(HomingJudge, RandomJointsAreHomedToTheirTrueZeroOrReportAReason) {
     const auto range = mw::testing::campaign_seeds(150);
     std::map<std::string, int> counts;
     int sound = 0, broken = 0, homed_sound = 0, homed_broken = 0, gantries = 0;

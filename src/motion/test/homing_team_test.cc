@@ -63,7 +63,7 @@ struct Gantry {
     bool areHomed() const { return m.isHomed(1) && m.isHomed(2); }
 };
 
-TEST(HomingTeam, BothSidesOfAGantryLeaveAndStopTogetherOnEveryLeg) {
+TEST(HomingTeam, BothSidesOfAGantryStartAndStopTogetherInEveryPhase) {
     for (const double latch : {2.0, -2.0}) {
         for (const double start : {0.0, -21.0, -30.0}) {  // off the switches, on one, on both
             for (const bool isIndex : {false, true}) {
@@ -88,7 +88,7 @@ TEST(HomingTeam, BothSidesOfAGantryLeaveAndStopTogetherOnEveryLeg) {
     }
 }
 
-TEST(HomingTeam, ASwitchThatIsNotFoundStopsBothBeforeTheyAreTooFarApart) {
+TEST(HomingTeam, AMissingSwitchStopsBothBeforeTheSkewIsTooLarge) {
     for (const int dead : {1, 2}) {
         for (const double most : {0.5, 3.0, 0.0}) {
             Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20}, most);
@@ -108,7 +108,7 @@ TEST(HomingTeam, ASwitchThatIsNotFoundStopsBothBeforeTheyAreTooFarApart) {
     }
 }
 
-TEST(HomingTeam, TheSmallerSkewOfTheTwoHolds) {
+TEST(HomingTeam, TheSmallerSkewLimitApplies) {
     for (const int dead : {1, 2}) {
         for (const int narrow : {1, 2}) {
             Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20});
@@ -126,7 +126,7 @@ TEST(HomingTeam, TheSmallerSkewOfTheTwoHolds) {
     }
 }
 
-TEST(HomingTeam, TheSlowerJointAndTheOverrideHoldForBoth) {
+TEST(HomingTeam, TheSlowerJointAndTheOverrideApplyToBoth) {
     for (const double scale : {0.4, 1.0, 1.2}) {
         Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20});
         g.m.set(Parameter::JOINT_MAX_VELOCITY, 15, 2);
@@ -141,7 +141,7 @@ TEST(HomingTeam, TheSlowerJointAndTheOverrideHoldForBoth) {
     }
 }
 
-TEST(HomingTeam, WhatDiffersOrLeadsApartIsRefusedBeforeItMoves) {
+TEST(HomingTeam, DifferentOrDivergingSettingsAreRejectedBeforeMotion) {
     Gantry g({.start = 0, .switch_at = -20}, {.start = 0, .switch_at = -20});
     g.m.set_switch(2, 0, 0);
     g.home();
@@ -181,7 +181,7 @@ TEST(HomingTeam, AnAbortAtAnyInstantStopsBothTogether) {
     EXPECT_GT(count, 20);
 }
 
-TEST(HomingTeam, JointsOfOneSequenceThatMoveDifferentThingsAreNoTeam) {
+TEST(HomingTeam, JointsOfOneSequenceOnDifferentAxesAreNoTeam) {
     HomingRig m;
     m.set_up({{.start = 0, .switch_at = -5}, {.start = 0, .switch_at = -80}, {.start = 0}});
     for (int j = 0; j < 3; ++j) {

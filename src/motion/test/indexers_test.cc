@@ -112,7 +112,7 @@ struct IndexerRig {
     }
 };
 
-TEST(Indexers, AProgramsG0UnlocksMovesAndLocksBeforeAnythingElseMoves) {
+TEST(Indexers, AG0UnlocksMovesAndLocksBeforeOtherMotion) {
     for (const double jerk : {0.0, 20000.0}) {
         IndexerRig r;
         r.rig.set(Parameter::TRAJ_PLANNER_TYPE, 0, jerk > 0 ? 1 : 0);
@@ -144,7 +144,7 @@ TEST(Indexers, AProgramsG0UnlocksMovesAndLocksBeforeAnythingElseMoves) {
     }
 }
 
-TEST(Indexers, TheStatusSaysThatItIndexes) {
+TEST(Indexers, TheStatusShowsIndexing) {
     IndexerRig r;
     r.ready(Mode::COORD);
     r.rapid(0, 90);
@@ -153,7 +153,7 @@ TEST(Indexers, TheStatusSaysThatItIndexes) {
     EXPECT_FALSE(r.rig.status().isInPosition);
 }
 
-TEST(Indexers, EveryOtherMoveOfItInAPathIsRefused) {
+TEST(Indexers, EveryOtherMoveOfAnIndexerIsRejected) {
     const std::function<CommandId(IndexerRig &)> moves[] = {
         [](IndexerRig &r) { return r.rapid(5, 30); },
         [](IndexerRig &r) { return r.rig.line(IndexerRig::at(0, 30), 20); },
@@ -214,7 +214,7 @@ TEST(Indexers, JogsUnlockMoveAndLock) {
     }
 }
 
-TEST(Indexers, NothingIsJoggedBesideIt) {
+TEST(Indexers, NothingElseIsJoggedMeanwhile) {
     for (const bool isJoint : {true, false}) {
         IndexerRig r;
         r.ready(isJoint ? Mode::FREE : Mode::TELEOP);
@@ -253,7 +253,7 @@ TEST(Indexers, NothingIsJoggedBesideIt) {
     }
 }
 
-TEST(Indexers, NoModeIsLeftAndNothingHomedWhileOneIsUnlocked) {
+TEST(Indexers, NoModeChangeAndNoHomingWhileUnlocked) {
     IndexerRig r;
     r.ready(Mode::FREE);
     r.rig.send(JogContinuous{{true, B}, 20});
@@ -307,7 +307,7 @@ void begin(IndexerRig &r, Mode mode) {
     }
 }
 
-TEST(Indexers, EveryStopInEveryStateEndsLockedAndTheMachineGoesOn) {
+TEST(Indexers, EveryStopInEveryStateEndsLockedAndTheMachineContinues) {
     for (const Mode mode : {Mode::FREE, Mode::TELEOP, Mode::COORD}) {
         for (const When when : {When::UNLOCKING, When::UNLOCKED, When::MOVING, When::LOCKING}) {
             for (const Event &event : EVENTS) {
@@ -350,7 +350,7 @@ TEST(Indexers, EveryStopInEveryStateEndsLockedAndTheMachineGoesOn) {
     }
 }
 
-TEST(Indexers, OneThatDoesNotUnlockIsAFaultAndNothingMoves) {
+TEST(Indexers, AMissingUnlockIsAFaultWithoutMotion) {
     for (const Mode mode : {Mode::FREE, Mode::TELEOP, Mode::COORD}) {
         IndexerRig r;
         r.ready(mode);
@@ -370,7 +370,7 @@ TEST(Indexers, OneThatDoesNotUnlockIsAFaultAndNothingMoves) {
     }
 }
 
-TEST(Indexers, OneThatDoesNotLockIsAFaultAndNoProgramGoesOn) {
+TEST(Indexers, AMissingLockIsAFaultAndStopsTheProgram) {
     IndexerRig r;
     r.ready(Mode::COORD);
     const CommandId index = r.rapid(0, 30);
@@ -397,7 +397,7 @@ TEST(Indexers, OneThatDoesNotLockIsAFaultAndNoProgramGoesOn) {
     r.check();
 }
 
-TEST(Indexers, ALockThatShutsInTheMoveSwitchesOffInThatCycle) {
+TEST(Indexers, ALockThatClosesDuringTheMoveSwitchesOffInTheSameCycle) {
     for (const Mode mode : {Mode::FREE, Mode::TELEOP, Mode::COORD}) {
         IndexerRig r;
         r.ready(mode);
@@ -413,7 +413,7 @@ TEST(Indexers, ALockThatShutsInTheMoveSwitchesOffInThatCycle) {
     }
 }
 
-TEST(Indexers, HoldsAndOverridesKeepItUnlockedOnItsWay) {
+TEST(Indexers, HoldsAndOverridesKeepItUnlockedDuringTheMove) {
     IndexerRig r;
     r.ready(Mode::COORD);
     const CommandId index = r.rapid(0, 90);
@@ -429,7 +429,7 @@ TEST(Indexers, HoldsAndOverridesKeepItUnlockedOnItsWay) {
     r.check();
 }
 
-TEST(Indexers, SwitchedOnWhileOpenItIsWaitedFor) {
+TEST(Indexers, SwitchingOnWaitsForAnOpenLock) {
     IndexerRig r;
     r.ready(Mode::COORD);
     r.rig.send(Disable{});

@@ -183,7 +183,7 @@ TEST(JogTargets, AWheelMovesAnAxisByItsCountsAndNoFarther) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, 0);
 }
 
-TEST(JogTargets, TurnsOfAWheelWhileTheMachineIsOffMoveNoAxis) {
+TEST(JogTargets, WheelCountsWhileTheMachineIsOffMoveNoAxis) {
     MotionRig rig;
     rig.ready(Mode::TELEOP);
     turn_to(rig, 0);

@@ -29,7 +29,7 @@ TEST(Machine, DeactivatingAJointLeavesItsAmplifierAlone) {
     EXPECT_FALSE(rig.out->joint[1].isAmpEnabled) << "and activating it does not raise it";
 }
 
-TEST(Machine, AJointThatIsLeftOutComesBackWithoutAStep) {
+TEST(Machine, AnInactiveJointIsActivatedWithoutAStep) {
     MotionRig rig;
     rig.ready(Mode::TELEOP);
     rig.send(SetJointActive{1, false});
@@ -60,7 +60,7 @@ TEST(Machine, AJointThatIsLeftOutComesBackWithoutAStep) {
     EXPECT_TRUE(rig.status().isEnabled);
 }
 
-TEST(Machine, TheNumberOfJointsChangesWhileItIsOff) {
+TEST(Machine, TheNumberOfJointsCanChangeWhileOff) {
     kinematics::Trivial xyz;
     xyz.configure("XYZ");
     MotionRig rig(xyz, 5, 100, 1000);
@@ -90,7 +90,7 @@ TEST(Machine, TheNumberOfJointsChangesWhileItIsOff) {
     EXPECT_TRUE(rig.status().isAllHomed) << "the kinematics moves three";
 }
 
-TEST(Machine, AJointThatIsNoLongerThereIsOffAndComesBackWhereItsMotorIs) {
+TEST(Machine, ARemovedJointIsOffAndReturnsAtItsMotorPosition) {
     kinematics::Trivial xyz;
     xyz.configure("XYZ");
     MotionRig rig(xyz, 4, 100, 1000);
@@ -121,7 +121,7 @@ TEST(Machine, AJointThatIsNoLongerThereIsOffAndComesBackWhereItsMotorIs) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Machine, NotAllJointsOfATableAreThere) {
+TEST(Machine, ARotaryTableRunsWithFiveOfEightJoints) {
     kinematics::RotaryTable table;
     MotionRig rig(table, 8, 100, 1000);
     rig.send(SetNumJoints{5});
@@ -135,7 +135,7 @@ TEST(Machine, NotAllJointsOfATableAreThere) {
     EXPECT_TRUE(rig.run_until([&] { return rig.isDone(flush); }, 10));
 }
 
-TEST(Machine, APoseIsNotTakenUpByJointsThatHaveLostTheirHomes) {
+TEST(Machine, JointsWithoutHomesDoNotTakeThePose) {
     kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     rig.set(Parameter::JOINT_VOLATILE_HOME, 0, 1);
@@ -162,7 +162,7 @@ TEST(Machine, APoseIsNotTakenUpByJointsThatHaveLostTheirHomes) {
     }
 }
 
-TEST(Machine, ARefusedMoveNamesTheAxisOrJointThatCannot) {
+TEST(Machine, ARejectedMoveNamesTheAxisOrJoint) {
     kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     for (int j = 0; j < 3; ++j) {

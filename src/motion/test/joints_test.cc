@@ -121,7 +121,7 @@ TEST(Joints, RotaryTableKeepsJointJerkLimits) {
     drive_all({table, 5, "XYZAC", true});
 }
 
-TEST(Joints, JerkLimitsOfJointsAloneAreKept) {
+TEST(Joints, JerkLimitsOfJointsWithoutAxisLimitsAreKept) {
     kinematics::RotaryTable table;
     table.set_tilt_axis(5, -40);
     drive_all({kinematics::CoreXy{}, 3, "XYZ", true, false});

@@ -79,7 +79,7 @@ struct KinematicsTypesTest : ::testing::Test {
     }
 };
 
-TEST_F(KinematicsTypesTest, JointsStandWhileTheTypeChangesAndThePoseIsTheNewOne) {
+TEST_F(KinematicsTypesTest, JointsDoNotMoveWhileTheTypeChangesAndThePoseIsNew) {
     ask(1);
     EXPECT_FALSE(rig.status().isInPosition) << "who waits for it waits for the new pose";
     settle();
@@ -96,13 +96,13 @@ TEST_F(KinematicsTypesTest, JointsStandWhileTheTypeChangesAndThePoseIsTheNewOne)
     expect_joints(0, 0);
 }
 
-TEST_F(KinematicsTypesTest, MovesSentRightBehindTheChangeAreDrivenInTheNewType) {
+TEST_F(KinematicsTypesTest, MovesAfterTheChangeUseTheNewType) {
     rig.in.kinematics_type = 1;
     drive(at(100, -20));
     expect_joints(20, 0);
 }
 
-TEST_F(KinematicsTypesTest, AChangeOnAPathStopsItAndSaysSo) {
+TEST_F(KinematicsTypesTest, AChangeOnAPathStopsThePathAndReportsIt) {
     const CommandId first = rig.line(at(90, 30));
     const CommandId second = rig.line(at(0, 0));
     rig.step(200);
@@ -144,7 +144,7 @@ TEST_F(KinematicsTypesTest, AnErrorOfThePathIsShownUntilAStopOrTheNextSwitchingO
     }
 }
 
-TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing) {
+TEST_F(KinematicsTypesTest, AMissingTypeIsReportedOnceAndChangesNothing) {
     for (const double type : {7.0, 0.5, -1.0, std::nan(""), 1e300}) {
         rig.faults.clear();
         ask(type);
@@ -164,7 +164,7 @@ TEST_F(KinematicsTypesTest, ATypeThatDoesNotExistIsToldOnceAndChangesNothing) {
 
 /// The machine is pushed by hand, while off, to a position without a pose. Its mode is one in which the pose
 /// commands the joints.
-TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineGoesOnInJointModeAlone) {
+TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineContinuesOnlyInJointMode) {
     ask(2);
     settle();
     for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
@@ -197,7 +197,7 @@ TEST_F(KinematicsTypesTest, WithoutAPoseTheMachineGoesOnInJointModeAlone) {
     }
 }
 
-TEST_F(KinematicsTypesTest, ATypeWithoutAPoseHereIsRefused) {
+TEST_F(KinematicsTypesTest, ATypeWithoutAPoseHereIsRejected) {
     drive(at(5, 5));
     ask(2);
     rig.step(50);
@@ -212,7 +212,7 @@ TEST_F(KinematicsTypesTest, ATypeWithoutAPoseHereIsRefused) {
     EXPECT_EQ(rig.faults.size(), 1U);
 }
 
-TEST_F(KinematicsTypesTest, AJogOfAnAxisEndsInTheTypeInWhichItWasBegun) {
+TEST_F(KinematicsTypesTest, AnAxisJogEndsBeforeTheTypeChanges) {
     rig.send(SetMode{Mode::TELEOP});
     rig.step(10);
     const CommandId jog = rig.send(JogIncremental{{false, 0}, 20, 5});
@@ -241,7 +241,7 @@ TEST_F(KinematicsTypesTest, WithoutHomesTheTypeChangesAndNoPoseIsNeeded) {
 
 /// At any time in any program, joints keep their limits (the rig checks them), the pose matches the joints,
 /// and a path that was not reported as stopped is executed.
-TEST_F(KinematicsTypesTest, AskedForAtAnyInstantNothingJumpsAndNothingIsLostInSilence) {
+TEST_F(KinematicsTypesTest, AChangeAtAnyInstantCausesNoJumpAndNoSilentLoss) {
     std::mt19937 random(14);
     std::uniform_int_distribution<int> pause(1, 400);
     std::uniform_int_distribution<int> type(0, 1);
@@ -302,7 +302,7 @@ class SaidLinear final : public kinematics::Kinematics, public kinematics::TypeS
 };
 
 /// External offsets require joints that move in proportion to axes, in each mode in which the type changes.
-TEST(KinematicsTypes, OffsetsAreThereFromTheChangeOnToATypeThatAllowsThem) {
+TEST(KinematicsTypes, OffsetsWorkAfterAChangeToATypeThatAllowsThem) {
     for (const Mode mode : {Mode::TELEOP, Mode::COORD}) {
         SaidLinear kinematics;
         MotionRig rig(kinematics, 3, 100, 1000);

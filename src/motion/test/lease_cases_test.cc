@@ -13,7 +13,7 @@ namespace {
 
 using testing::MotionRig;
 
-TEST(JogLease, HoldsWhereJointsAreNotAxes) {
+TEST(JogLease, WorksIfJointsAreNotAxes) {
     kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     rig.ready(Mode::TELEOP);
@@ -122,7 +122,7 @@ TEST(JogLease, NoRenewalOutlivesAStop) {
 }
 
 /// The jog ends twice the travel from its start, not from its renewal.
-TEST(JogLease, OfAJointThatIsNotHomedEndsWhereItWouldWithoutRenewals) {
+TEST(JogLease, OfAnUnhomedJointEndsAsWithoutRenewals) {
     const auto end_of = [](bool isLeased) {
         MotionRig rig;
         rig.set(Parameter::JOINT_MIN_LIMIT, 0, -2);

@@ -370,19 +370,19 @@ void run_all(Mode mode, double jerk) {
         all.refused_others);
 }
 
-TEST(JogLease, HoldsInFreeMode) {
+TEST(JogLease, WorksInFreeMode) {
     run_all(Mode::FREE, 0);
 }
 
-TEST(JogLease, HoldsInFreeModeWithJerkLimits) {
+TEST(JogLease, WorksInFreeModeWithJerkLimits) {
     run_all(Mode::FREE, 2e4);
 }
 
-TEST(JogLease, HoldsInTeleopMode) {
+TEST(JogLease, WorksInTeleopMode) {
     run_all(Mode::TELEOP, 0);
 }
 
-TEST(JogLease, HoldsInTeleopModeWithJerkLimits) {
+TEST(JogLease, WorksInTeleopModeWithJerkLimits) {
     run_all(Mode::TELEOP, 2e4);
 }
 

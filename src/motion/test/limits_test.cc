@@ -22,7 +22,7 @@ Settings with(std::initializer_list<std::tuple<Parameter, int, double>> values) 
     return settings;
 }
 
-TEST(Limits, AnAxisHasTheTightestOfItsOwnAndOfEveryJointThatMovesIt) {
+TEST(Limits, AnAxisHasTheLowestLimitOfItselfAndItsJoints) {
     const Settings s = with({{Parameter::AXIS_MAX_VELOCITY, Y, 80},
                              {Parameter::JOINT_MAX_VELOCITY, 1, 90},
                              {Parameter::JOINT_MAX_VELOCITY, 2, 70},
@@ -53,7 +53,7 @@ TEST(Limits, LettersAndKinematicsGiveTheSameMap) {
     EXPECT_EQ(axis_map("XQZ", 3).axis_of_joint[1], -1) << "a letter that is no axis";
 }
 
-TEST(Limits, SoftLimitsHoldForWhatIsHomed) {
+TEST(Limits, SoftLimitsApplyToHomedJoints) {
     const Settings s = with({{Parameter::AXIS_MIN_LIMIT, Y, -10},
                              {Parameter::AXIS_MAX_LIMIT, Y, 10},
                              {Parameter::JOINT_MIN_LIMIT, 1, -8},
@@ -73,7 +73,7 @@ TEST(Limits, SoftLimitsHoldForWhatIsHomed) {
     EXPECT_EQ(none.high[Y], UNBOUNDED);
 }
 
-TEST(Limits, AJogOfWhatIsNotHomedReachesTwiceTheTravelFromWhereItStands) {
+TEST(Limits, AJogOfAnUnhomedJointReachesTwiceTheTravel) {
     const Settings s = with({{Parameter::JOINT_MIN_LIMIT, 0, -10}, {Parameter::JOINT_MAX_LIMIT, 0, 40}});
     const AxisMap map = axis_map("X", 1);
     std::array<double, MAX_JOINTS> at{};
@@ -87,7 +87,7 @@ TEST(Limits, AJogOfWhatIsNotHomedReachesTwiceTheTravelFromWhereItStands) {
     EXPECT_EQ(jog_range(homed, map, axis, at.data()).high, 40);
 }
 
-TEST(Limits, NoJerkLimitIsNoneEverywhere) {
+TEST(Limits, WithoutAJerkLimitNoJerkIsLimited) {
     const Settings none = with({{Parameter::TRAJ_PLANNER_TYPE, 0, 1}});
     for (const AxisMap::Kind kind :
          {AxisMap::Kind::JOINTS_ARE_AXES, AxisMap::Kind::PLANNED, AxisMap::Kind::UNKNOWN}) {
@@ -102,7 +102,7 @@ TEST(Limits, NoJerkLimitIsNoneEverywhere) {
     }
 }
 
-TEST(Limits, JerkOfTheMachineLimitsStraightJogsAndNoTurningOnes) {
+TEST(Limits, JerkOfTheMachineLimitsLinearJogsAndNotAngularOnes) {
     const Settings s = with({{Parameter::TRAJ_PLANNER_TYPE, 0, 1},
                              {Parameter::TRAJ_MAX_JERK, 0, 2000},
                              {Parameter::JOINT_MAX_JERK, 0, 5000},
@@ -118,7 +118,7 @@ TEST(Limits, JerkOfTheMachineLimitsStraightJogsAndNoTurningOnes) {
     EXPECT_EQ(fold_limits(off, axis_map("X", 1), ALL_HOMED).axis_jog[X].jerk, 0);
 }
 
-TEST(Limits, KinematicsThatNobodyMayAskLeaveAMarginForJoints) {
+TEST(Limits, KinematicsWithoutPlannerCallsLeaveAMarginForJoints) {
     const Settings s = with({{Parameter::JOINT_MAX_VELOCITY, 0, 100},
                              {Parameter::JOINT_MAX_VELOCITY, 1, 50},
                              {Parameter::JOINT_IS_ANGULAR, 1, 1},
@@ -135,7 +135,7 @@ TEST(Limits, KinematicsThatNobodyMayAskLeaveAMarginForJoints) {
     EXPECT_EQ(fold_limits(s, map, ALL_HOMED).axes, 0x1ffU);
 }
 
-TEST(Limits, WhereJointsAreNoAxesTheirSoftLimitsAreNoneOfAxes) {
+TEST(Limits, SoftLimitsOfJointsThatAreNotAxesDoNotLimitAxes) {
     const kinematics::RotaryTable table;
     const Settings s = with({{Parameter::JOINT_MIN_LIMIT, 0, -1}, {Parameter::JOINT_MAX_LIMIT, 0, 1}});
     const AxisMap map = axis_map(table, 5);
@@ -146,7 +146,7 @@ TEST(Limits, WhereJointsAreNoAxesTheirSoftLimitsAreNoneOfAxes) {
 }
 
 /// X + Y and X - Y: each axis gets half of a joint if both move, and its offset gets its ratio of that half.
-TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNoAxes) {
+TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNotAxes) {
     Settings s = with({{Parameter::AXIS_OFFSET_RATIO, X, 0.3},
                        {Parameter::AXIS_OFFSET_RATIO, Y, 0.1},
                        {Parameter::TRAJ_PLANNER_TYPE, 0, 1},
@@ -188,7 +188,7 @@ TEST(Limits, ExternalOffsetsHaveTheirShareOfJointsThatAreNoAxes) {
     EXPECT_EQ(shared.within(range).high[2], 0) << "not shared";
 }
 
-TEST(Limits, WhatTurnsWithAnotherAxisHasNoExternalOffset) {
+TEST(Limits, AnAxisThatRotatesWithAnotherHasNoExternalOffset) {
     const kinematics::Rotate rotate;
     const kinematics::RotaryTable table;
     const AxisMap turned = axis_map(rotate, 6);

@@ -374,7 +374,7 @@ class Session {
 class LinearOffsetCampaign : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, LinearOffsetCampaign, ::testing::Bool());
 
-TEST_P(LinearOffsetCampaign, NoSampleOfTheSumLeavesALimitOfJointsOrAxes) {
+TEST_P(LinearOffsetCampaign, NoSampleOfTheSumExceedsALimitOfJointsOrAxes) {
     const char *wanted = std::getenv("MW_OFFSET_SESSIONS");
     const int sessions = wanted != nullptr ? std::atoi(wanted) : 18;
     const char *first = std::getenv("MW_OFFSET_FIRST");

@@ -37,7 +37,7 @@ void slow_joints(LinearMachine &m) {
     }
 }
 
-TEST(LinearOffsets, HeightOfACoreXYTableFollowsItsPinBesideAProgram) {
+TEST(LinearOffsets, TheHeightOfACoreXyTableFollowsItsPinDuringAProgram) {
     LinearMachine m = corexy();
     m.ratio[2] = 0.4;
     LinearRig rig(m);
@@ -60,7 +60,7 @@ TEST(LinearOffsets, HeightOfACoreXYTableFollowsItsPinBesideAProgram) {
     rig.expect_within();
 }
 
-TEST(LinearOffsets, OffsetsOfBothAxesOfABeltAndAPathShareWhatTheJointCanDo) {
+TEST(LinearOffsets, OffsetsOfBothBeltAxesAndAPathShareTheJointLimits) {
     for (const bool isJerkLimited : {false, true}) {
         LinearMachine m = corexy(isJerkLimited);
         slow_joints(m);
@@ -120,7 +120,7 @@ std::array<double, 2> speeds_on_circle(double sense) {
 
 /// Corners of chords are shifted outwards, against the moving average, up to the farthest extent of the path,
 /// whichever joint this moves: a mirrored circle runs the same with exchanged joints.
-TEST(LinearOffsets, ACircleOfChordsIsDrivenTheSameInTheDirectionOfEitherJoint) {
+TEST(LinearOffsets, ACircleOfChordsRunsAlikeInTheDirectionOfEitherJoint) {
     const auto [left_0, left_1] = speeds_on_circle(1);
     const auto [right_0, right_1] = speeds_on_circle(-1);
     EXPECT_GT(left_0, 30);
@@ -128,7 +128,7 @@ TEST(LinearOffsets, ACircleOfChordsIsDrivenTheSameInTheDirectionOfEitherJoint) {
     EXPECT_NEAR(left_1, right_0, 0.005 * left_1);
 }
 
-TEST(LinearOffsets, AJogHasWhatOffsetsLeaveOfTheJoints) {
+TEST(LinearOffsets, AJogHasTheRemainingLimitsOfTheJoints) {
     for (const bool isJerkLimited : {false, true}) {
         LinearMachine m = corexy(isJerkLimited);
         slow_joints(m);
@@ -163,7 +163,7 @@ TEST(LinearOffsets, AJogIsNoFasterThanItsAxisWhateverTheOverride) {
     }
 }
 
-TEST(LinearOffsets, AnOffsetGoesAsFarAsTheJointsOfTheBeltsLetIt) {
+TEST(LinearOffsets, AnOffsetReachesTheLimitsOfTheBeltJoints) {
     LinearMachine m = corexy();
     m.ratio = {0.2, 0, 0};
     m.joints[0].high = 60;
@@ -189,7 +189,7 @@ TEST(LinearOffsets, AnOffsetGoesAsFarAsTheJointsOfTheBeltsLetIt) {
     rig.expect_within();
 }
 
-TEST(LinearOffsets, AJogStopsWhereTheOffsetLeavesTheJointNoMore) {
+TEST(LinearOffsets, AJogStopsWhereTheOffsetUsesTheTravelOfTheJoint) {
     LinearMachine m = corexy();
     m.ratio = {0.2, 0, 0};
     m.joints[0].high = 60;
@@ -206,7 +206,7 @@ TEST(LinearOffsets, AJogStopsWhereTheOffsetLeavesTheJointNoMore) {
 }
 
 /// The travel to the jog's target is reserved: the offset must not use it before the jog has arrived.
-TEST(LinearOffsets, AJogUnderWayArrivesWhateverAnOffsetAsksForMeanwhile) {
+TEST(LinearOffsets, AnActiveJogReachesItsTargetWhateverTheOffset) {
     for (const bool isJerkLimited : {false, true}) {
         LinearMachine m = corexy(isJerkLimited);
         m.ratio = {0.2, 0, 0};
@@ -224,7 +224,7 @@ TEST(LinearOffsets, AJogUnderWayArrivesWhateverAnOffsetAsksForMeanwhile) {
     }
 }
 
-TEST(LinearOffsets, AnArcIsCheckedWhereItsJointsGoFarthest) {
+TEST(LinearOffsets, AnArcIsCheckedAtTheExtremesOfItsJoints) {
     LinearMachine m = corexy();
     m.ratio = {0.2, 0, 0};
     m.joints[0].high = 20 * std::sqrt(2.0) - 5e-5;  // between two sampled positions
@@ -244,7 +244,7 @@ TEST(LinearOffsets, AnArcIsCheckedWhereItsJointsGoFarthest) {
     rig.expect_within();
 }
 
-TEST(LinearOffsets, ARigidTapAlongAnAxisOfTheSameJointsIsRefused) {
+TEST(LinearOffsets, ARigidTapAlongAnAxisOfTheSameJointsIsRejected) {
     LinearMachine m = corexy();
     m.ratio = {0.2, 0, 0};
     LinearRig rig(m);
@@ -263,7 +263,7 @@ TEST(LinearOffsets, ARigidTapAlongAnAxisOfTheSameJointsIsRefused) {
     EXPECT_EQ(rig.rig->refusal(beside), Reason::NONE);
 }
 
-TEST(LinearOffsets, ATurnedTableHasOneOfZAndNoneOfWhatTurns) {
+TEST(LinearOffsets, ARotatedTableHasAnOffsetOfZOnly) {
     LinearMachine m = ::mw::testing::turned_table();
     m.ratio = {0.3, 0.3, 0.3, 0.3, 0, 0.3};
     LinearRig rig(m);
@@ -285,7 +285,7 @@ TEST(LinearOffsets, ATurnedTableHasOneOfZAndNoneOfWhatTurns) {
     rig.expect_within();
 }
 
-TEST(LinearOffsets, OffAndOnFreeModeAbortAndLostHomesAreAsWhereJointsAreAxes) {
+TEST(LinearOffsets, OffAndOnFreeModeAbortAndLostHomesWorkAsWithTrivialKinematics) {
     LinearMachine m = corexy();
     m.ratio = {0.3, 0.3, 0.3};
     LinearRig rig(m);
@@ -325,7 +325,7 @@ TEST(LinearOffsets, OffAndOnFreeModeAbortAndLostHomesAreAsWhereJointsAreAxes) {
     rig.rig->forgive_joints();
 }
 
-TEST(LinearOffsets, PinsOfMatrixkinsThatAreSetLaterCount) {
+TEST(LinearOffsets, LaterValuesOfMatrixkinsPinsApply) {
     LinearMachine m = ::mw::testing::measured({1, 0, 0, 0, 1, 0, 0, 0, 1});
     m.ratio = {0, 0.5, 0};
     LinearRig rig(m);

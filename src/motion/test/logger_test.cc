@@ -60,7 +60,7 @@ geometry::Pose counting(double factor) {
     return pose;
 }
 
-TEST_F(LoggerTest, MovesHaveTheWordsThatTestsKnow) {
+TEST_F(LoggerTest, MovesHaveTheNamesThatTestsUse) {
     configure();
     move(line(counting(1), true, 0, 2));
     EXPECT_EQ(said(),
@@ -71,7 +71,7 @@ TEST_F(LoggerTest, MovesHaveTheWordsThatTestsKnow) {
                       "motion_type=2, vel=0.0166667, ini_maxvel=1.66296, acc=415.74, turn=-1\n");
 }
 
-TEST_F(LoggerTest, SettingsAreToldOnceTheyAreWholeAndLaterOnesAtOnce) {
+TEST_F(LoggerTest, SettingsAreLoggedWhenCompleteAndLaterChangesAtOnce) {
     set(Parameter::JOINT_MAX_LIMIT, 0, 40);
     EXPECT_EQ(said(), "");
     send(SetNumJoints{1});
@@ -84,7 +84,7 @@ TEST_F(LoggerTest, SettingsAreToldOnceTheyAreWholeAndLaterOnesAtOnce) {
     EXPECT_EQ(said(), "SET_JOINT_MAX_LIMIT index=0, value=30\n");
 }
 
-TEST_F(LoggerTest, CommandsComeInTheOrderInWhichTheyWereSent) {
+TEST_F(LoggerTest, CommandsKeepTheirOrder) {
     configure();
     move(line(counting(1), true, 0, 1));
     send(SpindleOn{0, 234});
@@ -98,7 +98,7 @@ TEST_F(LoggerTest, CommandsComeInTheOrderInWhichTheyWereSent) {
     EXPECT_LT(second, off);
 }
 
-TEST_F(LoggerTest, AnAbortIsAnAbortOfEachJogAndMakesStaleWhatCameBefore) {
+TEST_F(LoggerTest, AnAbortIsLoggedForEachJogAndRejectsEarlierCommands) {
     configure();
     move(line(counting(1), true, 0, 1));
     epoch = 1;

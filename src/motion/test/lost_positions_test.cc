@@ -22,7 +22,7 @@ bool isNothingKnown(const MotionRig &rig) {
            !s.joint[2].isHomed && !rig.out->joint[0].isAmpEnabled;
 }
 
-TEST(LostPositions, AMachineThatMovesIsSwitchedOffInThatCycleAndIsNotHomed) {
+TEST(LostPositions, AMovingMachineIsSwitchedOffInTheSameCycleAndUnhomed) {
     for (const Mode mode : {Mode::COORD, Mode::TELEOP, Mode::FREE}) {
         MotionRig rig;
         rig.ready(mode);
@@ -85,7 +85,7 @@ TEST(LostPositions, HomingEnds) {
     EXPECT_TRUE(isNothingKnown(rig));
 }
 
-TEST(LostPositions, AMachineThatKnowsNothingYetLosesNothing) {
+TEST(LostPositions, AMachineWithoutHomesLosesNothing) {
     MotionRig rig;
     rig.step(5);
     ++rig.in.lost_positions;

@@ -87,7 +87,7 @@ TEST(Machine, AnIndexThatSetsTheEncoderToZeroMovesNoMotor) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Machine, AFailedHomingSaysWhyAndStopsTheOthers) {
+TEST(Machine, AFailedHomingReportsTheReasonAndStopsTheOthers) {
     MotionRig rig;
     set_up_switch(rig);
     rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, 0);
@@ -121,7 +121,7 @@ TEST(Machine, AbortDuringHomingStopsAllJoints) {
     EXPECT_EQ(rig.out->joint[0].motor_pos_cmd, stood);
 }
 
-TEST(Machine, BacklashIsTakenUpAtReversalWithinHalfTheLimits) {
+TEST(Machine, BacklashIsCompensatedAtReversalWithinHalfTheLimits) {
     MotionRig rig;
     rig.set(Parameter::JOINT_BACKLASH, 0, 0.4);
     rig.ready(Mode::FREE);
@@ -220,7 +220,7 @@ TEST(Machine, ATeleopVectorMovesAllItsAxesOrNone) {
     EXPECT_NEAR(rig.status().axis[1].velocity, -5, 1e-9);
 }
 
-TEST(Machine, HomingEndsAJogAndBeginsWhenItStands) {
+TEST(Machine, HomingEndsAJogAndBeginsAtStandstill) {
     MotionRig rig;
     rig.ready(Mode::FREE);
     rig.send(JogContinuous{{true, 1}, 20});
@@ -235,7 +235,7 @@ TEST(Machine, HomingEndsAJogAndBeginsWhenItStands) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Machine, TheFeedScaleActsOnHoming) {
+TEST(Machine, TheFeedOverrideScalesHoming) {
     MotionRig rig;
     rig.set(Parameter::JOINT_HOME_SEARCH_VEL, 0, 10);
     rig.set(Parameter::JOINT_HOME_LATCH_VEL, 0, 1);
@@ -310,7 +310,7 @@ TEST(Machine, TheWatchdogStopsTheMachineWhenTaskHangs) {
     EXPECT_EQ(rig.faults[0].kind, FaultKind::TASK_LOST);
 }
 
-TEST(Machine, ThePlannerChangesBetweenMovesAtRest) {
+TEST(Machine, ThePlannerChangesAtStandstillBetweenMoves) {
     MotionRig rig;
     constexpr double JERK = 20000;
     rig.set(Parameter::TRAJ_MAX_JERK, 0, JERK);
@@ -376,7 +376,7 @@ TEST(Machine, JogsKeepTheJerkLimit) {
     EXPECT_LE(worst, JERK * (1 + 1e-5));
 }
 
-TEST(Machine, FeedOverrideZeroStandsAndUpGoesOn) {
+TEST(Machine, FeedOverrideZeroStopsAndAHigherOneContinues) {
     MotionRig rig;
     rig.set(Parameter::MAX_FEED_SCALE, 0, 2.0);
     rig.ready();
@@ -410,7 +410,7 @@ TEST(Machine, ProbeContactInAJogStopsIt) {
     EXPECT_EQ(rig.faults[0].kind, FaultKind::PROBE_TRIPPED_IN_MOVE);
 }
 
-TEST(Machine, AProbeThatTripsInAJogMayBeLeftOutOfAccount) {
+TEST(Machine, AProbeContactInAJogCanBeIgnored) {
     MotionRig rig;
     rig.set(Parameter::TRAJ_NO_PROBE_JOG_ERROR, 0, 1);
     rig.ready(Mode::FREE);
@@ -436,7 +436,7 @@ TEST(Machine, AProbeThatTripsInAJogMayBeLeftOutOfAccount) {
     EXPECT_EQ(rig.faults[0].detail, 0);
 }
 
-TEST(Machine, AProbeThatTripsWhileHomingMayBeLeftOutOfAccount) {
+TEST(Machine, AProbeContactWhileHomingCanBeIgnored) {
     for (const bool isIgnored : {false, true}) {
         MotionRig rig;
         rig.set(Parameter::TRAJ_NO_PROBE_HOME_ERROR, 0, isIgnored ? 1 : 0);

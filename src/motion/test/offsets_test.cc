@@ -80,7 +80,7 @@ struct OffsetRig : MotionRig {
     }
 };
 
-TEST(Offsets, CountsMoveTheAxisBesideWhatIsProgrammed) {
+TEST(Offsets, CountsMoveTheAxisInAdditionToTheProgram) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 200;
@@ -151,7 +151,7 @@ TEST(Offsets, AreKeptWithoutEnableAndClearedByTheirPin) {
     rig.expect_within();
 }
 
-TEST(Offsets, SwitchedOffAndOnNothingMovesAndTheyAreZero) {
+TEST(Offsets, SwitchingOffAndOnMovesNothingAndClearsThem) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.pins(0).counts = 300;
@@ -173,7 +173,7 @@ TEST(Offsets, SwitchedOffAndOnNothingMovesAndTheyAreZero) {
 }
 
 /// The program starts at the position of the machine; an earlier offset causes no jump.
-TEST(Offsets, SwitchedOnInAProgramTheMachineStandsWhereItStood) {
+TEST(Offsets, SwitchingOnInCoordModeMovesNothing) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 300;
@@ -192,7 +192,7 @@ TEST(Offsets, SwitchedOnInAProgramTheMachineStandsWhereItStood) {
     rig.expect_within();
 }
 
-TEST(Offsets, StayThroughModesAndJointJogsAndCountOnlyInModesOfAxes) {
+TEST(Offsets, RemainInAllModesAndCountOnlyInTeleopAndCoordinatedMode) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.pins(0).counts = 300;
@@ -217,7 +217,7 @@ TEST(Offsets, StayThroughModesAndJointJogsAndCountOnlyInModesOfAxes) {
     rig.expect_within();
 }
 
-TEST(Offsets, WithoutHomesThereAreNone) {
+TEST(Offsets, WithoutHomesThereIsNoOffset) {
     OffsetRig rig;
     rig.send(Enable{});
     rig.step(2);
@@ -245,7 +245,7 @@ TEST(Offsets, WithoutHomesThereAreNone) {
     EXPECT_TRUE(rig.faults.empty());
 }
 
-TEST(Offsets, GrowNoFartherThanTheSoftLimitAndWhatIsProgrammedLetThem) {
+TEST(Offsets, GrowOnlyWithinTheSoftLimitsOfTheSum) {
     OffsetRig rig;
     rig.ready();
     rig.line(at(45, 0, 0), 20);
@@ -285,7 +285,7 @@ TEST(Offsets, AJogStopsAtTheSoftLimitOfTheSum) {
     rig.expect_within();
 }
 
-TEST(Offsets, AProbeTripsAtAPlaceOfTheProgram) {
+TEST(Offsets, AProbeContactIsAProgramPosition) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 500;
@@ -302,7 +302,7 @@ TEST(Offsets, AProbeTripsAtAPlaceOfTheProgram) {
     EXPECT_NEAR(rig.motor(0) - rig.status().axis[0].external_offset, rig.status().probed_pos[0], 0.1);
 }
 
-TEST(Offsets, ARigidTapAlongTheirAxisIsRefusedAlongAnotherItIsNot) {
+TEST(Offsets, ARigidTapIsRejectedOnlyAlongTheOffsetAxis) {
     OffsetRig rig;
     rig.ready();
     RigidTap tap;
@@ -320,7 +320,7 @@ TEST(Offsets, ARigidTapAlongTheirAxisIsRefusedAlongAnotherItIsNot) {
     EXPECT_EQ(rig.link->queue_depth.load(), 1U) << "it waits for the spindle";
 }
 
-TEST(Offsets, AStopBrakesThemToo) {
+TEST(Offsets, AStopBrakesOffsets) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 3000;
@@ -334,7 +334,7 @@ TEST(Offsets, AStopBrakesThemToo) {
 }
 
 /// An offset that an emergency stop interrupts keeps its value, and nothing waits for its target.
-TEST(Offsets, CutOffOnTheirWayTheyAreAtRest) {
+TEST(Offsets, SwitchingOffStopsMovingOffsets) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.pins(0).counts = 3000;
@@ -353,7 +353,7 @@ TEST(Offsets, CutOffOnTheirWayTheyAreAtRest) {
 }
 
 /// While the planner plans, the servo thread continues: an accepted move is counted at once.
-TEST(Offsets, AMoveThatIsAcceptedKeepsItsRoomFromThatInstant) {
+TEST(Offsets, AnAcceptedMoveReservesItsTravelAtOnce) {
     int refused = 0;
     for (int lead = 0; lead < 3 * MotionRig::PLANNER_PERIOD; ++lead) {
         OffsetRig rig;
@@ -377,7 +377,7 @@ TEST(Offsets, AMoveThatIsAcceptedKeepsItsRoomFromThatInstant) {
 }
 
 /// A soft limit keeps the offset at zero. Removing its share ends the offset and motion.eoffset-limited.
-TEST(Offsets, WithoutAShareNoneIsLimited) {
+TEST(Offsets, WithoutAShareNoLimitIsReduced) {
     OffsetRig rig;
     rig.ready(Mode::TELEOP);
     rig.send(JogContinuous{{false, 0}, 80});
@@ -397,7 +397,7 @@ TEST(Offsets, WithoutAShareNoneIsLimited) {
     rig.expect_within();
 }
 
-TEST(Offsets, TakenAwayTheShareLeavesTheOffsetWhereItIs) {
+TEST(Offsets, RemovingTheShareKeepsTheOffset) {
     OffsetRig rig;
     rig.ready();
     rig.pins(0).counts = 300;
@@ -419,7 +419,7 @@ TEST(Offsets, TakenAwayTheShareLeavesTheOffsetWhereItIs) {
 class OffsetCampaign : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, OffsetCampaign, ::testing::Bool());
 
-TEST_P(OffsetCampaign, NoSampleOfTheSumLeavesALimit) {
+TEST_P(OffsetCampaign, NoSampleOfTheSumExceedsALimit) {
     int refused = 0, done = 0, limited = 0, reached = 0;
     for (unsigned seed = 1; seed <= 24; ++seed) {
         SCOPED_TRACE(seed);

@@ -9,7 +9,7 @@ namespace {
 
 using testing::MotionRig;
 
-TEST(Probing, AProbingMoveIsRefusedWhereItsEndIsThereAtTheStart) {
+TEST(Probing, AProbingMoveIsRejectedIfItsConditionHoldsAtTheStart) {
     for (const bool isAway : {false, true}) {
         MotionRig rig;
         rig.ready();
@@ -26,7 +26,7 @@ TEST(Probing, AProbingMoveIsRefusedWhereItsEndIsThereAtTheStart) {
     }
 }
 
-TEST(Probing, AProbingMoveThatNeedNotTripIsDoneWhereItsEndIsThereAtTheStart) {
+TEST(Probing, AnOptionalProbingMoveIsDoneIfItsConditionHoldsAtTheStart) {
     constexpr double NEARLY_NOTHING = 0.002;  // travel of one cycle of acceleration and its braking [mm]
     for (const bool isAway : {false, true}) {
         MotionRig rig;
@@ -55,7 +55,7 @@ TEST(Probing, AProbingMoveThatNeedNotTripIsDoneWhereItsEndIsThereAtTheStart) {
     }
 }
 
-TEST(SynchedOutputs, AnyNumberOfSynchronisedOutputsIsTakenBetweenTwoMoves) {
+TEST(SynchedOutputs, AnyNumberOfSynchronizedOutputsIsAcceptedBetweenTwoMoves) {
     MotionRig rig;
     rig.ready();
     const auto at = [](double x) {

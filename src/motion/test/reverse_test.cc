@@ -68,7 +68,7 @@ struct ReverseRig : MotionRig {
 
 class Reverse : public ::testing::TestWithParam<bool> {};
 
-TEST_P(Reverse, GoesBackToTheStartAndForwardToTheEnd) {
+TEST_P(Reverse, MovesBackToTheStartAndForwardToTheEnd) {
     ReverseRig rig(GetParam());
     const CommandId flush = rig.zigzag(6);
     rig.go(400);
@@ -91,7 +91,7 @@ TEST_P(Reverse, GoesBackToTheStartAndForwardToTheEnd) {
     EXPECT_TRUE(rig.checker->isWithin()) << rig.checker->report();
 }
 
-TEST_P(Reverse, AFeedThatIsNotANumberStandsStill) {
+TEST_P(Reverse, ANonFiniteFeedStops) {
     ReverseRig rig(GetParam());
     rig.in.adaptive_feed = 1;
     const CommandId flush = rig.zigzag(6);
@@ -133,7 +133,7 @@ TEST_P(Reverse, AnyChangesKeepTheLimits) {
     }
 }
 
-TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere) {
+TEST_P(Reverse, AnAbortInReverseRunStopsAndANewPathBeginsThere) {
     ReverseRig rig(GetParam());
     rig.zigzag(6);
     rig.go(600);
@@ -155,7 +155,7 @@ TEST_P(Reverse, AnAbortOnTheWayBackStopsThereAndANewPathBeginsThere) {
 }
 
 /// Reverse run begins where the path stopped, at first too slowly to be seen. An abort then stops it at once.
-TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing) {
+TEST_P(Reverse, AnAbortBeforeTheReverseMotionMovesNothing) {
     constexpr double SEEN = 1e-9, NOTHING = 2e-6;
     int judged = 0;
     for (int wait = 0; wait < 150; wait += 3) {
@@ -200,7 +200,7 @@ TEST_P(Reverse, AnAbortBeforeAnythingIsSeenToGoBackMovesNothing) {
 }
 
 /// A program that waits treats the end of its last move as its current position.
-TEST_P(Reverse, NobodyGoesBackFromTheEndOfAllThatWasCommanded) {
+TEST_P(Reverse, ReverseRunNeedsARemainingPath) {
     ReverseRig rig(GetParam());
     ASSERT_TRUE(rig.finish(rig.zigzag(4), 30));
     rig.in.adaptive_feed = -1;
@@ -248,7 +248,7 @@ TEST_P(Reverse, ByCommandWithAndWithoutAdaptiveFeed) {
     }
 }
 
-TEST_P(Reverse, NobodyGoesBackToBeforeTheSpindleOrTheToolChanged) {
+TEST_P(Reverse, ReverseRunEndsAtAChangeOfSpindleOrTool) {
     for (const CommandBody &change :
          {CommandBody(SpindleOn{0, 100}), CommandBody(SpindleOff{0}), CommandBody(SetToolOffset{}),
           CommandBody(SetMode{Mode::TELEOP}), CommandBody(Abort{})}) {

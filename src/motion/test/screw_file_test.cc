@@ -18,7 +18,7 @@ std::string error_of(const std::string &text, ScrewFileType type = ScrewFileType
     return points.has_value() ? "none" : points.error().str();
 }
 
-TEST(ScrewFile, BothTypesOfTheManualAreRead) {
+TEST(ScrewFile, BothFileTypesAreRead) {
     const auto actual =
         parsed("-1.000 -1.005 -0.995\n0.000 0.002 -0.003\n1.000 1.003 0.998\n", ScrewFileType::ACTUAL);
     ASSERT_TRUE(actual.has_value());
@@ -36,7 +36,7 @@ TEST(ScrewFile, BothTypesOfTheManualAreRead) {
     EXPECT_EQ((*offset)[2].reverse, -0.004);
 }
 
-TEST(ScrewFile, WhatIsWrongIsToldWithLineAndColumn) {
+TEST(ScrewFile, ErrorsAreReportedWithLineAndColumn) {
     EXPECT_NE(error_of("0 0 0\n1 0.1 x7\n").find("x.comp:2:7: 'x7' is not a number"), std::string::npos);
     EXPECT_NE(error_of("0 0 0\n1 nan 0\n").find("x.comp:2:3: 'nan' is not a number"), std::string::npos);
     EXPECT_NE(error_of("0,0,0\n").find("x.comp:1:1: '0,0,0' is not a number"), std::string::npos);
@@ -50,7 +50,7 @@ TEST(ScrewFile, WhatIsWrongIsToldWithLineAndColumn) {
     EXPECT_NE(error_of("").find("no point"), std::string::npos);
 }
 
-TEST(ScrewFile, AFileOfTheOtherTypeIsFoundByItsSlope) {
+TEST(ScrewFile, AFileOfTheOtherTypeIsDetectedByItsSlope) {
     EXPECT_NE(error_of("0 0 0\n10 10.001 9.999\n", ScrewFileType::OFFSET).find("x.comp:2:4: the correction"),
               std::string::npos);
     EXPECT_NE(error_of("0 0 0\n10 0.001 9.999\n").find("x.comp:2:10: the correction"), std::string::npos)
@@ -59,7 +59,7 @@ TEST(ScrewFile, AFileOfTheOtherTypeIsFoundByItsSlope) {
               std::string::npos);
 }
 
-TEST(ScrewFile, TenThousandPointsAreTakenAndNoMore) {
+TEST(ScrewFile, TenThousandPointsAreAcceptedAndNoMore) {
     std::string text;
     for (int n = 0; n < MAX_SCREW_POINTS; ++n) {
         text += std::to_string(n) + " 0.01 -0.01\n";
@@ -70,7 +70,7 @@ TEST(ScrewFile, TenThousandPointsAreTakenAndNoMore) {
               std::string::npos);
 }
 
-TEST(ScrewFile, WhatIsNoFileIsToldAndNotWaitedFor) {
+TEST(ScrewFile, AMissingFileIsReportedWithoutWaiting) {
     EXPECT_FALSE(read_screw_file("/dev/zero", 0, ScrewFileType::ACTUAL).has_value());
     EXPECT_FALSE(read_screw_file(std::filesystem::temp_directory_path().string(), 0, ScrewFileType::ACTUAL)
                      .has_value());

@@ -145,7 +145,7 @@ double bound_of(const Slide &slide, double pitch, bool isJerkLimited) {
 class Screw : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutJerk, Screw, ::testing::Bool());
 
-TEST_P(Screw, TheSlideIsWhereItIsToldToBeWithinTheErrorOfTheTable) {
+TEST_P(Screw, TheSlideIsAtItsPositionWithinTheErrorOfTheTable) {
     ScrewRig rig(GetParam());
     constexpr double PITCH = 1;
     rig.load(measure(rig.slide.play, PITCH));
@@ -163,13 +163,13 @@ TEST_P(Screw, TheSlideIsWhereItIsToldToBeWithinTheErrorOfTheTable) {
     EXPECT_NEAR(rig.status().joint[0].pos_fb, rig.status().joint[0].pos_cmd, V * MotionRig::T + 1e-9);
 }
 
-TEST_P(Screw, WithoutATableTheSlideIsNot) {
+TEST_P(Screw, WithoutATableTheSlideHasTheScrewError) {
     ScrewRig rig(GetParam());
     rig.ready(Mode::FREE);
     EXPECT_GT(judge(rig, 0, 40).worst, 0.03) << "else the judge sees nothing";
 }
 
-TEST_P(Screw, HomedByASwitchOnTheSlideThatIsWhereItsZeroIs) {
+TEST_P(Screw, TheZeroIsAtTheHomeSwitchOnTheSlide) {
     ScrewRig rig(GetParam());
     constexpr double PITCH = 1, TRIP = -12, HOME_OFFSET = -5;
     constexpr double ZERO = TRIP - HOME_OFFSET;  // of the joint, measured at the slide
@@ -241,7 +241,7 @@ TEST(ScrewTables, ANewTableMovesNothing) {
 class TakeUp : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(OfPlayAndOfATable, TakeUp, ::testing::Bool());
 
-TEST_P(TakeUp, SwitchedOnAgainAMotorStandsUntilTheJointMoves) {
+TEST_P(TakeUp, AfterSwitchingOnAMotorWaitsUntilTheJointMoves) {
     ScrewRig rig(false);
     if (GetParam()) {
         rig.load(measure(0.4, 1));

@@ -12,7 +12,7 @@ namespace {
 
 using testing::MotionRig;
 
-TEST(StatusOfMotion, SettingsAreShownAsTheyAreNow) {
+TEST(StatusOfMotion, CurrentSettingsAreShown) {
     MotionRig rig;
     const auto check = [&](int joint, double least, double most, double velocity, double acceleration) {
         rig.set(Parameter::JOINT_MIN_LIMIT, joint, least);
@@ -39,7 +39,7 @@ TEST(StatusOfMotion, SettingsAreShownAsTheyAreNow) {
 }
 
 /// Status of a rapid, a feed, an arc and a probing move, during the motion.
-TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast) {
+TEST(StatusOfMotion, TheCurrentMoveIsShownAndNoneAfterTheLast) {
     MotionRig rig;
     rig.ready();
     geometry::Pose end;
@@ -113,7 +113,7 @@ TEST(StatusOfMotion, TheMoveUnderWayAndNothingBehindTheLast) {
 }
 
 /// The status is published in parts: a reader always gets the complete status of the controller.
-TEST(StatusOfMotion, ReadersHaveTheWholeOfIt) {
+TEST(StatusOfMotion, ReadersGetACompleteStatus) {
     MotionRig rig;
     auto reader = std::make_unique<PublishedStatus::Copy>();
     int changes = 0;
@@ -154,7 +154,7 @@ TEST(StatusOfMotion, ReadersHaveTheWholeOfIt) {
 
 /// More moves than the planner can accept: the status shows it while they wait, until they are executed or
 /// discarded by a stop.
-TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom) {
+TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForSpace) {
     constexpr int MOVES = 5000;
     for (const bool isAborted : {false, true}) {
         MotionRig rig;
@@ -184,7 +184,7 @@ TEST(StatusOfMotion, TheQueueIsFullOnlyWhileMovesWaitForRoom) {
 }
 
 /// There is no move while off.
-TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff) {
+TEST(StatusOfMotion, NoMoveIsActiveWhileTheMachineIsOff) {
     MotionRig rig;
     rig.ready();
     geometry::Pose end;
@@ -205,7 +205,7 @@ TEST(StatusOfMotion, NothingIsUnderWayOnceTheMachineIsOff) {
 }
 
 /// A trace has one sample for each cycle with the values of that cycle's status.
-TEST(StatusOfMotion, ATraceSaysOfEachCycleWhatItsStatusSays) {
+TEST(StatusOfMotion, ATraceAgreesWithTheStatusInEachCycle) {
     MotionRig rig;
     rig.ready();
     TraceSample sample;

@@ -66,7 +66,7 @@ class KinematicsTapping : public ::testing::TestWithParam<std::tuple<std::size_t
     bool isJerkLimited() const { return std::get<1>(GetParam()); }
 };
 
-TEST_P(KinematicsTapping, ZFollowsTheAngleAndNoJointDoesMoreThanItCan) {
+TEST_P(KinematicsTapping, ZFollowsTheAngleAndNoJointExceedsItsLimits) {
     SpindleBench bench(machine().model, machine().start, tap_spindle(), isJerkLimited());
     const double rpm = std::string(machine().name) == "Puma" ? 300 : 1000;
     bench.spin(rpm);
@@ -212,7 +212,7 @@ class RandomTap {
     double length_ = 0;
 };
 
-TEST(KinematicsTappingCampaign, AnyHoleOnAnyMachineIsMadeWithinItsJointsLimitsOrRefused) {
+TEST(KinematicsTappingCampaign, AnyTapOnAnyMachineKeepsJointLimitsOrIsRejected) {
     const auto [first, count] = testing::campaign_seeds(90);
     int made = 0, refused = 0;
     for (int seed = first; seed < first + count && !::testing::Test::HasFailure(); ++seed) {

@@ -47,7 +47,7 @@ TEST_P(Tapping, ZFollowsTheAngleThroughBothReversalsToItsDepth) {
     EXPECT_EQ(bench.limit_report(), "");
 }
 
-TEST_P(Tapping, DoesSoAtOtherSpeedsPitchesAndHands) {
+TEST_P(Tapping, FollowsTheAngleAtOtherSpeedsPitchesAndDirections) {
     struct Case {
         double rpm, pitch, scale;
     };
@@ -69,7 +69,7 @@ TEST_P(Tapping, DoesSoAtOtherSpeedsPitchesAndHands) {
     }
 }
 
-TEST_P(Tapping, FindsTheDepthOfADriveThatReactsLateOrLags) {
+TEST_P(Tapping, ReachesTheDepthWithADelayedOrLaggingDrive) {
     plants::SpindleTraits late = tap_spindle();
     late.reaction_s = 0.06;
     plants::SpindleTraits lagging;
@@ -119,7 +119,7 @@ TEST_P(Tapping, OverridesAndHoldsWaitForItsEnd) {
     EXPECT_EQ(bench.limit_report(), "");
 }
 
-TEST_P(Tapping, AHoldBeforeItBeginsLeavesItWhole) {
+TEST_P(Tapping, AHoldBeforeTheStartDoesNotInterruptTheTap) {
     // Slow enough that the tool waits for the helix.
     SpindleBench bench(tap_spindle(), GetParam());
     bench.spin(30);
@@ -144,7 +144,7 @@ enum class Stop { ABORT, ESTOP, SPINDLE_FAULT, TASK_DEAD, DISABLE };
 
 class StoppedTapping : public ::testing::TestWithParam<std::tuple<Stop, bool>> {};
 
-TEST_P(StoppedTapping, InAnyPhaseStandsWithinItsLimitsAndNeverRestartsTheSpindle) {
+TEST_P(StoppedTapping, InAnyPhaseStopsWithinItsLimitsAndNeverRestartsTheSpindle) {
     const auto [stop, isJerkLimited] = GetParam();
     // A whole tap takes about 4.5 s.
     for (int at = 10; at < 4800; at += 331) {
@@ -202,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(Stops, StoppedTapping,
                                                               Stop::TASK_DEAD, Stop::DISABLE),
                                             ::testing::Bool()));
 
-TEST_P(Tapping, AnAbortLeavesTheTapStandingInItsThread) {
+TEST_P(Tapping, AnAbortLeavesTheTapStoppedInItsThread) {
     for (int at = 700; at < 3200; at += 211) {
         SpindleBench bench(tap_spindle(), GetParam());
         bench.spin(1000);
@@ -232,7 +232,7 @@ std::set<FaultKind> kinds(const testing::MotionRig &rig) {
     return out;
 }
 
-TEST_P(Tapping, WhatCannotBeIsRefusedBeforeItMoves) {
+TEST_P(Tapping, AnImpossibleTapIsRejectedBeforeMotion) {
     struct Case {
         double rpm, pitch, seconds, z, scale;
         FaultKind kind;
@@ -264,7 +264,7 @@ TEST_P(Tapping, WhatCannotBeIsRefusedBeforeItMoves) {
     })) << "no turn of room below";
 }
 
-TEST_P(Tapping, ASpindleThatTurnsBackTooSuddenlyForTheJerkLimitsIsRefusedBeforeItMoves) {
+TEST_P(Tapping, ATooAbruptReversalForTheJerkLimitsIsRejectedBeforeMotion) {
     SpindleBench bench(tap_spindle(0.03), GetParam());  // 556 turns/s2
     bench.spin(1000);
     bench.rapid(10, TOP);
@@ -283,7 +283,7 @@ TEST_P(Tapping, ASpindleThatTurnsBackTooSuddenlyForTheJerkLimitsIsRefusedBeforeI
     EXPECT_NE(fault_text(bench.rig.faults[0]).find("so suddenly"), std::string::npos);
 }
 
-TEST_P(Tapping, ASpindleThatDoesNotTurnBackOrJumpsEndsInAStop) {
+TEST_P(Tapping, AMissingReversalOrAJumpEndsInAStop) {
     for (const bool isJump : {false, true}) {
         SpindleBench bench(tap_spindle(), GetParam());
         bench.spin(1000);
@@ -302,7 +302,7 @@ TEST_P(Tapping, ASpindleThatDoesNotTurnBackOrJumpsEndsInAStop) {
     }
 }
 
-TEST_P(Tapping, FeedbackThatIsNoNumberStopsWhatIsInStepAndNothingElse) {
+TEST_P(Tapping, NonFiniteFeedbackStopsOnlySynchronizedMotion) {
     SpindleBench bench(tap_spindle(), GetParam());
     const auto turn = bench.rig.before_step;
     bool isLost = false;

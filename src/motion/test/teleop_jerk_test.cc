@@ -289,7 +289,7 @@ TEST(TeleopJerk, AxesShareALimitThatIsLoweredWhileTheyMove) {
 /// An axis that arrives with all of its acceleration keeps it; the other axis starts later.
 class NoOvershoot : public ::testing::TestWithParam<bool> {};
 
-TEST_P(NoOvershoot, OfAJogWhereAnotherBegins) {
+TEST_P(NoOvershoot, WhenAJogReplacesAnother) {
     kinematics::CoreXy model;
     for (int begin = 600; begin < 1000; begin += 8) {
         MotionRig rig(model, 3, 100, 1000);
@@ -341,7 +341,7 @@ double least_time_s(double way, double v, double a, double j) {
 
 /// Tower 0 of a delta is perpendicular to X. Its joint hardly moves where the jog begins, and a quarter as
 /// fast as X where it stops.
-TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes) {
+TEST(TeleopJerk, AJogStopsSoonWhereASlowJointStartsToMove) {
     kinematics::LinearDelta delta;
     delta.set(0, 130.25);
     delta.set(1, 269);
@@ -369,7 +369,7 @@ TEST(TeleopJerk, AJogThatBeginsWhereAJointHardlyMovesStopsSoonWhereItDoes) {
 }
 
 /// Along X of a CoreXY both belts move like the axis, so the minimum time is known.
-TEST(TeleopJerk, AJogOfAStraightJointLineTakesTheLeastTime) {
+TEST(TeleopJerk, AJogAlongOneJointTakesTheMinimumTime) {
     for (const double acceleration : {200.0, 1000.0, 3000.0}) {
         for (const double per_s : {3.0, 10.0, 50.0}) {
             kinematics::CoreXy model;

@@ -160,22 +160,22 @@ void jog_to_soft_limits(const ToSoftLimits &machine) {
     EXPECT_GT(reached, count);
 }
 
-TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxes) {
+TEST(Teleop, ADeltaStopsAtTheSoftLimitsOfItsAxes) {
     const kinematics::LinearDelta delta;
     jog_to_soft_limits({delta, 3, {0, 1}, false});
 }
 
-TEST(Teleop, ADeltaComesToRestAtTheSoftLimitsOfItsAxesWithJerkLimits) {
+TEST(Teleop, ADeltaStopsAtTheSoftLimitsOfItsAxesWithJerkLimits) {
     const kinematics::LinearDelta delta;
     jog_to_soft_limits({delta, 3, {0, 1}, true, 850});
 }
 
-TEST(Teleop, AHeadComesToRestAtTheSoftLimitsOfItsAxes) {
+TEST(Teleop, AHeadStopsAtTheSoftLimitsOfItsAxes) {
     const kinematics::TiltingHead head;
     jog_to_soft_limits({head, 6, {geometry::AXIS_B, geometry::AXIS_W}, false});
 }
 
-TEST(Teleop, ATableComesToRestAtItsSoftLimitsWithJerkLimits) {
+TEST(Teleop, ATableStopsAtItsSoftLimitsWithJerkLimits) {
     kinematics::RotaryTable table;
     table.set_tilt_axis(5, -40);
     jog_to_soft_limits({table, 5, {geometry::AXIS_A, geometry::AXIS_C}, true});
@@ -183,7 +183,7 @@ TEST(Teleop, ATableComesToRestAtItsSoftLimitsWithJerkLimits) {
 
 /// A wheel that turns slowly commands small steps, so the axis brakes and accelerates at the same average
 /// speed. It never moves backwards.
-TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack) {
+TEST(Teleop, AnAxisThatFollowsAWheelSlowlyDoesNotReverse) {
     const kinematics::TiltingHead head;
     MotionRig rig(head, 6, 60, 630);
     constexpr std::array<double, 6> VELOCITY{211, 60, 126, 185, 60, 252};
@@ -230,7 +230,7 @@ TEST(Teleop, WhoCreepsBehindAWheelTurnsNotBack) {
     rig.forgive_joints();
 }
 
-TEST(Teleop, ACoreXyJogGoesAsFastAsItsJointsAllow) {
+TEST(Teleop, ACoreXyJogUsesTheFullSpeedOfItsJoints) {
     kinematics::CoreXy model;
     MotionRig rig(model, 3, 100, 1000);
     rig.ready(Mode::TELEOP);
@@ -259,7 +259,7 @@ class AskedKinematics final : public kinematics::Kinematics {
 };
 
 /// The edge of the workspace past the stopping point does not affect a jog.
-TEST(Teleop, JointsAreExaminedNearAJogOnly) {
+TEST(Teleop, JointsAreEvaluatedOnlyNearTheJog) {
     constexpr double SENT = 400, NEAR = 20;
     AskedKinematics model;
     MotionRig rig(model, 3, 100, 1000);

@@ -9,7 +9,7 @@
 namespace mw::motion {
 namespace {
 
-TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn) {
+TEST(Texts, EveryReasonAndFaultHasItsOwnText) {
     std::set<std::string> seen;
     for (int r = 1; r < static_cast<int>(Reason::COUNT); ++r) {
         Answer a;
@@ -35,7 +35,7 @@ TEST(Texts, EveryReasonAndFaultHasOneOfItsOwn) {
     }
 }
 
-TEST(Texts, ARefusalNamesTheJointOrAxisWhereThatIsKnown) {
+TEST(Texts, ARejectionNamesTheJointOrAxisIfKnown) {
     Answer a;
     a.reason = Reason::INDEXER_ALONE;
     const auto has = [&](const char *name) {

@@ -78,7 +78,7 @@ TEST_P(ThreadAngle, IsTheSameForAllPassesFrom100To3000Rpm) {
                 GetParam() ? " with jerk limits" : "", worst / DEGREE, wander / DEGREE);
 }
 
-TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass) {
+TEST_P(ThreadAngle, IsKeptWhenTheSpindleSlowsDownInThePass) {
     SpindleBench bench(mill_spindle(), GetParam());
     double first = NAN, at_start = 0, meanwhile = 0;
     for (const double rpm : {300.0, 1000.0, 2000.0}) {
@@ -108,7 +108,7 @@ TEST_P(ThreadAngle, IsKeptWhenTheSpindleIsSlowedWithinThePass) {
 /// With few counts the measured speed scatters, and the calculated helix is on both sides of a slower tool.
 /// Synchronisation must not be reported before the speed is right, because the correction has only a tenth of
 /// the acceleration.
-TEST_P(ThreadAngle, IsNotTakenForMetByFewCountsWhileSpeedIsGained) {
+TEST_P(ThreadAngle, IsNotReachedTooEarlyWithFewCountsWhileAccelerating) {
     constexpr double GENTLE = 90;
     for (const int counts : {500, 1024, 4096}) {
         for (const double rpm : {380.0, 520.0, 663.0}) {
@@ -130,7 +130,7 @@ TEST_P(ThreadAngle, IsNotTakenForMetByFewCountsWhileSpeedIsGained) {
     }
 }
 
-TEST_P(ThreadAngle, AThreadWithoutAPartAtItsLeadIsRefusedBeforeItMoves) {
+TEST_P(ThreadAngle, AThreadWithoutAPartAtItsPitchIsRejectedBeforeMotion) {
     SpindleBench bench(mill_spindle(), GetParam());
     bench.spin(2000);
     bench.rapid(10, PASS_TOP);

@@ -12,7 +12,7 @@
 namespace mw::motion {
 namespace {
 
-TEST(Threads, ALateOrLostPlannerNeverBreaksTheLimits) {
+TEST(Threads, ALateOrLostPlannerNeverExceedsTheLimits) {
     testing::MotionRig rig;
     rig.ready();
     geometry::Pose end;

@@ -54,12 +54,12 @@ double run_program(double first_tolerance) {
     return cycles * MotionRig::T;
 }
 
-TEST(Tolerance, ASmallerOneOnTheWayCostsAStopAndNotTheSpeedOfTheCurves) {
+TEST(Tolerance, AReducedToleranceCausesAStopAndNotSlowerCurves) {
     const double alone = run_program(0.01);
     EXPECT_LT(run_program(1.0), alone + 0.2);
 }
 
-TEST(Tolerance, ASmallerOneOnTheWayKeepsSingleSteps) {
+TEST(Tolerance, AReducedToleranceKeepsSingleSteps) {
     MotionRig rig("XYZ", V, A);
     for (int j = 0; j < 3; ++j) {
         rig.set(Parameter::AXIS_MAX_JERK, j, J);

@@ -98,7 +98,7 @@ Primitive circle(double radius, double turns) {
     return p;
 }
 
-TEST(AccelerationProfile, DrivesALineInTheTimeOfATrapezoid) {
+TEST(AccelerationProfile, RunsALineInTheTimeOfATrapezoid) {
     const ExactRun path({make_line(at(0), at(40))}, 50);
     AccelerationProfile profile(WINDOW_S, PERIOD);
     profile.begin(0);
@@ -108,7 +108,7 @@ TEST(AccelerationProfile, DrivesALineInTheTimeOfATrapezoid) {
     samples.expect_within_limits(path);
 }
 
-TEST(AccelerationProfile, DrivesACircleNearlyAtTheSpeedThatTheAxesAllow) {
+TEST(AccelerationProfile, RunsACircleNearlyAtTheMaximumSpeedOfTheAxes) {
     const double radius = 5;
     const ExactRun path({circle(radius, 5)}, 1e300);
     AccelerationProfile profile(WINDOW_S, PERIOD);
@@ -121,7 +121,7 @@ TEST(AccelerationProfile, DrivesACircleNearlyAtTheSpeedThatTheAxesAllow) {
     EXPECT_LT(samples.time_s, length / std::sqrt(A * radius) + 0.05);
 }
 
-TEST(AccelerationProfile, AStopKeepsTheLimitsAndIsTheSoonest) {
+TEST(AccelerationProfile, StopIsTheShortestWithinTheLimits) {
     const ExactRun path({make_line(at(0), at(40))}, 80);
     AccelerationProfile profile(WINDOW_S, PERIOD);
     profile.begin(0);
@@ -164,7 +164,7 @@ TEST(AccelerationProfile, BrakesAtOnceForALowerSpeedLimit) {
     samples.expect_within_limits(path);
 }
 
-TEST(AccelerationProfile, AShortCurveFromStopToStopIsDriven) {
+TEST(AccelerationProfile, PlansAShortCurveBetweenStops) {
     const ExactRun path({circle(1000, 1e-6)}, 50);
     AccelerationProfile profile(WINDOW_S, PERIOD);
     profile.begin(0);

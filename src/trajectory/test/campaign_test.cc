@@ -83,7 +83,7 @@ TEST(Campaign, LongProgramsThatOnceFailedKeepJerkLimits) {
     }
 }
 
-TEST(Campaign, AProgramAtRestThatNeedsManyAttemptsGoesOn) {
+TEST(Campaign, AProgramThatNeedsManyPlanningAttemptsContinues) {
     Asked asked;
     check(61015998U, true, asked, Kind::LONG, 3);
     EXPECT_EQ(asked.driven, 1);

@@ -31,7 +31,7 @@ Program program_of(int seed, Maker &maker) {
 }
 
 /// Without holds and overrides, the program ends exactly, within limits and tolerance.
-TEST(CurvePlanner, DrivesAProgram) {
+TEST(CurvePlanner, RunsAProgram) {
     const auto [first_seed, count] = testing::campaign_seeds(SEEDS);
     for (int seed = first_seed; seed < first_seed + count; ++seed) {
         SCOPED_TRACE(seed);
@@ -161,7 +161,7 @@ TEST(CurvePlanner, StopsBetweenProbingFeedsPerRevolutionAndOtherMoves) {
 }
 
 /// The machine needs seconds to stop. Plans must reach far enough for its full speed.
-TEST(CurvePlanner, ReachesFullSpeedWhereBrakingTakesSeconds) {
+TEST(CurvePlanner, ReachesFullSpeedIfBrakingTakesSeconds) {
     constexpr double V = 200, A = 100, J = 1000, WAY = 1500;
     Program program;
     program.limits.velocity.fill(V);
@@ -183,7 +183,7 @@ TEST(CurvePlanner, ReachesFullSpeedWhereBrakingTakesSeconds) {
 }
 
 /// Short chords on few long spans: moves are removed when they are complete.
-TEST(CurvePlanner, DrivesMoreMovesThanThereIsRoomFor) {
+TEST(CurvePlanner, RunsMoreMovesThanTheRingHolds) {
     constexpr int MOVES = 2 * static_cast<int>(PRIMITIVE_CAPACITY);
     Program program;
     program.limits.velocity.fill(500);

@@ -106,7 +106,7 @@ TEST(Curve, FollowsAStraightLineWithItsLengthAsParameter) {
     EXPECT_NEAR(builder.final_s(), 50.0, 1e-9);
 }
 
-TEST(Curve, TakesMostOfTheToleranceAtACornerAndNeverMore) {
+TEST(Curve, UsesMostOfTheToleranceAtACornerAndNeverMore) {
     for (const double angle : {0.02, 0.5, 1.5708, 2.8, std::numbers::pi}) {
         for (const double tolerance : {0.001, 0.02, 0.3}) {
             CurveBuilder builder(WIDEST);
@@ -184,7 +184,7 @@ Fit fitted_in_box(const std::vector<Primitive> &moves, double tolerance) {
     return {worst_excursion(builder.spans(), low, high), builder.worst_deviation()};
 }
 
-TEST(Curve, StaysWithinSoftLimitsThatThePathRunsAlongAndTouches) {
+TEST(Curve, StaysWithinSoftLimitsThatThePathFollowsAndTouches) {
     constexpr double ROUNDING = 1e-14;
     const auto square = lines({xyz(0, 0), xyz(20, 0), xyz(20, 5), xyz(0, 5), xyz(0, 0)});
     const auto peaks = lines({xyz(0, 0), xyz(5, 10), xyz(6, 0), xyz(7, 10), xyz(7, 0), xyz(7, 10)});
@@ -221,7 +221,7 @@ TEST(Curve, StaysWithinSoftLimitsOnRandomPaths) {
     }
 }
 
-TEST(Curve, LeavesSoftLimitsNoFartherThanThePath) {
+TEST(Curve, ExceedsSoftLimitsNoMoreThanThePath) {
     const auto moves = lines({xyz(0, 0), xyz(10, 6), xyz(20, 0)});
     CurveBuilder builder(WIDEST);
     builder.set_room({xyz(-1, -1, -1), xyz(21, 5, 1), {}});
@@ -269,7 +269,7 @@ TEST(Curve, StaysWithinTheSoftLimitsOfBelts) {
     EXPECT_GE(worst, -1e-2) << "a curve comes close to its limits";
 }
 
-TEST(Curve, BeginsAtAPlace) {
+TEST(Curve, BeginsAtAGivenPathLength) {
     const auto moves = lines({xyz(0, 0), xyz(10, 6), xyz(20, 0)});
     CurveBuilder builder(WIDEST);
     const std::vector<Span> from_0 = fitted(moves, 0.1, builder);

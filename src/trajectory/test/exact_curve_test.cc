@@ -78,7 +78,7 @@ double worst_error(const std::vector<curve::Span> &spans, const Primitive &move,
     return worst;
 }
 
-TEST(ExactBuilder, FollowsArcsAndHelicesAsCloselyAsItSays) {
+TEST(ExactBuilder, FollowsArcsAndHelicesWithinTheDocumentedError) {
     for (const double radius : {0.01, 1.0, 300.0}) {
         for (const double drift : {0.0, 0.04}) {
             for (const double angle : {0.003, 1.0, 20.0}) {
@@ -119,7 +119,7 @@ TEST(ExactBuilder, ReportsTheJumpsBetweenMoves) {
     EXPECT_NEAR(geometry::norm(corner.after.first - corner.before.first), std::numbers::sqrt2, 1e-9);
 }
 
-TEST(SpeedCap, IsTheSpeedAtWhichTheJumpTakesTheJerkOfASample) {
+TEST(SpeedCap, IsTheSpeedAtWhichTheJumpUsesItsPartOfTheJerk) {
     curve::Seam seam;
     seam.before.first[0] = seam.after.first[0] = 1;
     seam.after.second[1] = 0.25;
@@ -167,7 +167,7 @@ TEST(ExactProfile, PassesFromLinesToArcsWithoutAStop) {
     EXPECT_LE(at_seam, 1.2 * laid.caps[0].v);
 }
 
-TEST(ExactProfile, TakesAFeedThatEndsARoundingFromASeamAsOnePlace) {
+TEST(ExactProfile, TreatsAFeedEndWithinRoundingOfASeamAsOnePoint) {
     const Program program = line_arc_line();
     const CurveLimits limits = profile::limits_of(program.limits);
     LaidCurve laid = CurveLayer(program, limits).lay();

@@ -84,7 +84,7 @@ struct ServoRig {
     }
 };
 
-TEST(Executor, FollowsCellsToTheCycle) {
+TEST(Executor, FollowsCellsExactlyInEveryCycle) {
     ServoRig rig;
     rig.start();
     for (int n = 2; n <= 150; ++n) {
@@ -104,7 +104,7 @@ TEST(Executor, StopsOnThePathWhenCellsRunOut) {
     EXPECT_FALSE(rig.executor.isEmpty());
 }
 
-TEST(Executor, AHoldTakesTheNextStopAndVoidsAPlanThatWasMadeBefore) {
+TEST(Executor, AHoldTakesTheNextStopAndInvalidatesAnEarlierPlan) {
     ServoRig rig;
     rig.start();
     rig.step(100);
@@ -122,7 +122,7 @@ TEST(Executor, AHoldTakesTheNextStopAndVoidsAPlanThatWasMadeBefore) {
     EXPECT_TRUE(rig.executor.isAtRest());
 }
 
-TEST(Executor, WhileHeldNoPlanIsTaken) {
+TEST(Executor, NoPlanIsAcceptedWhileHeld) {
     for (const bool isHeld : {false, true}) {
         ServoRig rig;
         rig.executor.hold(isHeld);
@@ -133,7 +133,7 @@ TEST(Executor, WhileHeldNoPlanIsTaken) {
     }
 }
 
-TEST(Executor, ADropStopsAndLeavesNothing) {
+TEST(Executor, ADropStopsAndRemovesThePath) {
     ServoRig rig;
     rig.start();
     rig.step(100);

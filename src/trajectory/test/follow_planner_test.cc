@@ -18,7 +18,7 @@ mw::testing::LimitChecker judge_of(const FollowLimits &limits) {
         {{limits.velocity, limits.acceleration, limits.jerk > 0 ? limits.jerk : 1e300}}, DT, 1e-5);
 }
 
-TEST(FollowPlanner, APlaceThatKeepsTheLimitsIsFollowedWithoutLag) {
+TEST(FollowPlanner, ACommandWithinTheLimitsIsFollowedWithoutLag) {
     for (const double jerk : {0.0, 1000.0}) {
         const FollowLimits limits{100, 1000, jerk, -1e3, 1e3};
         FollowPlanner planner;
@@ -36,7 +36,7 @@ TEST(FollowPlanner, APlaceThatKeepsTheLimitsIsFollowedWithoutLag) {
     }
 }
 
-TEST(FollowPlanner, WhateverThePlaceDoesTheLimitsHoldAndItIsReached) {
+TEST(FollowPlanner, AnyCommandIsReachedWithinTheLimits) {
     for (unsigned seed = 1; seed <= 400; ++seed) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> part(0, 1);
@@ -77,7 +77,7 @@ TEST(FollowPlanner, WhateverThePlaceDoesTheLimitsHoldAndItIsReached) {
     }
 }
 
-TEST(FollowPlanner, AStepIsMadeUpInTheTimeThatTheLimitsLeave) {
+TEST(FollowPlanner, AStepIsReachedInTheMinimumTimeWithinTheLimits) {
     const FollowLimits limits{50, 500, 0, -1e3, 1e3};
     FollowPlanner planner;
     planner.reset(0);

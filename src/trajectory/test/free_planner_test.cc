@@ -57,7 +57,7 @@ TEST(AxisMotion, RandomTargetChangesKeepTheLimits) {
 }
 
 /// While the motion decelerates to its target, the feed override becomes 0, and then a stop is requested.
-TEST(AxisMotion, WhoMayHaveNoSpeedAnyMoreComesToRestFromEverywhere) {
+TEST(AxisMotion, StopsFromEveryStateWhenTheVelocityLimitBecomesZero) {
     for (unsigned seed = 1; seed <= 2000; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         std::mt19937 random(seed);
@@ -85,7 +85,7 @@ TEST(AxisMotion, WhoMayHaveNoSpeedAnyMoreComesToRestFromEverywhere) {
     }
 }
 
-TEST(AxisMotion, RandomTargetChangesKeepTheJerkLimitToo) {
+TEST(AxisMotion, RandomTargetChangesKeepTheJerkLimit) {
     for (unsigned seed = 1; seed <= 50; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         std::mt19937 random(seed);
@@ -142,7 +142,7 @@ TEST(AxisMotion, ReachesItsTargetInTheLeastTimeWithAJerkLimit) {
 
 /// A stop is requested in every cycle, while the acceleration limit changes because joints leave more or less
 /// of it to an axis. The motion must stop no later than with the minimum limit, and never become faster.
-TEST(AxisMotion, AStopThatIsAskedForAgainAndAgainStops) {
+TEST(AxisMotion, AStopRequestedInEveryCycleStops) {
     for (const double jerk : {0.0, 8000.0}) {
         for (unsigned seed = 1; seed <= 20; ++seed) {
             std::mt19937 random(seed);
@@ -179,7 +179,7 @@ TEST(AxisMotion, AStopThatIsAskedForAgainAndAgainStops) {
     }
 }
 
-TEST(AxisMotion, WhoIsSentOnWhileItBrakesGoesThere) {
+TEST(AxisMotion, ReachesANewTargetThatIsSetWhileItBrakes) {
     for (const double jerk : {0.0, 20000.0}) {
         AxisMotion p;
         p.max_velocity = 50;
@@ -205,7 +205,7 @@ TEST(AxisMotion, WhoIsSentOnWhileItBrakesGoesThere) {
 
 /// The target moves by a small step in every cycle. The motion reaches it in each cycle, but must not count
 /// as stopped.
-TEST(AxisMotion, ATargetThatCreepsMakesNoJump) {
+TEST(AxisMotion, ASlowlyMovingTargetCausesNoJump) {
     AxisMotion p;
     p.max_velocity = 50;
     p.max_acceleration = 500;

@@ -32,7 +32,7 @@ std::vector<curve::Span> spans_of(const std::vector<Primitive> &moves) {
     return builder.spans();
 }
 
-TEST(JointCurve, HasTheDerivativesOfTheMap) {
+TEST(JointCurve, HasTheDerivativesOfTheKinematics) {
     const TurningTable table(150);
     JointCurve joints;
     joints.begin(&table, joint_limits(300, 3000, 30000));
@@ -56,7 +56,7 @@ TEST(JointCurve, HasTheDerivativesOfTheMap) {
     }
 }
 
-TEST(JointCurve, IsComputedOnceWhileTheCurveGrows) {
+TEST(JointCurve, IsCalculatedOnceWhileTheCurveGrows) {
     class Counting final : public JointMap {
       public:
         bool joints_at(const Pose &p, double *joints) const noexcept override {
@@ -106,7 +106,7 @@ class Broken final : public JointMap {
     bool jumps_;
 };
 
-TEST(JointProfile, StopsBeforePosesWithoutJoints) {
+TEST(JointProfile, StopsBeforePosesWithoutASolution) {
     for (const bool jumps : {false, true}) {
         const Broken map(jumps);
         const auto spans = spans_of({make_line(pose(0, 0, 0), pose(100, 0, 0))});
@@ -182,7 +182,7 @@ class Polar final : public JointMap {
     }
 };
 
-TEST(JointProfile, SlowsDownBesideASingularPose) {
+TEST(JointProfile, SlowsDownNearASingularPose) {
     const Polar map;
     const JointLimits joints = joint_limits(90, 1000, 20000);
     for (const double distance : {10.0, 1.0, 0.1, 0.01}) {

@@ -94,7 +94,7 @@ class Stretches {
     std::mt19937 random_;
 };
 
-TEST(LimitOf, KeepsEveryAxisAndUsesOneOfThem) {
+TEST(LimitOf, KeepsEveryAxisLimitAndReachesOne) {
     Stretches make(1);
     int used_velocity = 0;
     int used_acceleration = 0;
@@ -116,20 +116,20 @@ TEST(LimitOf, KeepsEveryAxisAndUsesOneOfThem) {
     EXPECT_GT(used_acceleration, 300);
 }
 
-TEST(LimitOf, AWishIsTheHighestSpeed) {
+TEST(LimitOf, ARequestedSpeedIsTheMaximum) {
     const Primitive p = make_line(at(0), at(10));
     EXPECT_EQ(limit_of(p, 0, 10, even_limits(100, 1000), 30).v, 30);
     EXPECT_EQ(limit_of(p, 0, 10, even_limits(100, 1000), 300).v, 100);
 }
 
-TEST(Workspace, HoldsWhatIsWithinTheSoftLimits) {
+TEST(Workspace, ContainsPosesWithinTheSoftLimits) {
     Workspace workspace;
     workspace.high[0] = 10.25;
     EXPECT_TRUE(workspace.holds(at(10)));
     EXPECT_FALSE(workspace.holds(at(10.5)));
 }
 
-TEST(Workspace, HoldsWhatIsWithinTheRoomThatJointsHave) {
+TEST(Workspace, ContainsPosesWithinTheRangesOfJoints) {
     const Belts belts;
     Workspace workspace;
     workspace.map = &belts;

@@ -76,7 +76,7 @@ TEST(MappedCurve, KeepsLimitsAndSoftLimitsOfJoints) {
 }
 
 /// The number of samples along a move is bounded, however long the move is.
-TEST(MappedCurve, AHelixOfManyTurnsHasATolerance) {
+TEST(MappedCurve, AHelixOfManyRevolutionsHasATolerance) {
     const TurningTable table(100);
     Workspace workspace;
     workspace.map = &table;

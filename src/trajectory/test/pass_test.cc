@@ -19,7 +19,7 @@ namespace {
 
 constexpr double T = 1e-3;
 
-TEST(SpeedChange, LeadsToTheSpeedWithoutAccelerationWithinTheLimits) {
+TEST(SpeedChange, ReachesTheSpeedWithZeroAccelerationWithinTheLimits) {
     std::mt19937_64 random(7);
     const auto real = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -211,7 +211,7 @@ TEST(Pass, EveryPassHasTheSameAngle) {
     }
 }
 
-TEST(Pass, ACornerIsPassedAtTheSpeedOfTheSpindleBehindTheEndOfTheFirstLine) {
+TEST(Pass, ACornerIsPassedAtSpindleSpeedAfterTheEndOfTheFirstLine) {
     for (const double jerk : {UNLIMITED, 20000.0}) {
         for (const double rps : {5.0, 15.0}) {
             Threading t(rps, jerk);
@@ -250,7 +250,7 @@ TEST(Pass, AStopAtAnyMomentKeepsTheLimits) {
     }
 }
 
-TEST(Pass, WithAnyEncoderIsAsExactAsItsStep) {
+TEST(Pass, IsAsExactAsTheEncoderStep) {
     for (const double jerk : {UNLIMITED, 20000.0}) {
         for (const int counts : {20, 60, 200, 1000, 4096, 10000}) {
             double low = INFINITY, high = -INFINITY, off = 0, highest_a = 0;

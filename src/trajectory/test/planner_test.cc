@@ -39,7 +39,7 @@ Pose at(double x, double y = 0, double z = 0) {
     return p;
 }
 
-TEST(Planner, DrivesOneLineToItsExactEndInTheTimeOfATrapezoid) {
+TEST(Planner, RunsOneLineToItsExactEndInTheTimeOfATrapezoid) {
     Rig rig{Pose{}};
     rig.planner.set_limits(plain_limits());
     rig.planner.add(make_line(Pose{}, at(10, 3.3, 0)), feed(50));
@@ -53,7 +53,7 @@ TEST(Planner, DrivesOneLineToItsExactEndInTheTimeOfATrapezoid) {
     EXPECT_NEAR(static_cast<double>(rig.cycle) * Rig::T, expected, 0.012);
 }
 
-TEST(Planner, ExactStopComesToRestOnTheCorner) {
+TEST(Planner, ExactStopStopsAtTheCorner) {
     Rig rig{Pose{}};
     rig.planner.set_limits(plain_limits());
     rig.planner.add(make_line(Pose{}, at(5)), feed(50, geometry::PathMode::EXACT_STOP));
@@ -140,11 +140,11 @@ void expect_told(const Limits &limits) {
     EXPECT_EQ(rig.samples.back(), Pose{});
 }
 
-TEST(Planner, APlaceWithoutAWayOnIsTold) {
+TEST(Planner, APositionWithoutAPossiblePlanIsReported) {
     expect_told(plain_limits());
 }
 
-TEST(Planner, WithJerkLimitsItIsToldToo) {
+TEST(Planner, APositionWithoutAPossiblePlanIsReportedWithJerkLimits) {
     Limits limits = plain_limits();
     limits.jerk.fill(5000);
     limits.isJerkLimited = true;

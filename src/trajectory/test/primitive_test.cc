@@ -57,7 +57,7 @@ Pose flat(double x, double y) {
     return p;
 }
 
-TEST(Primitive, EndsWhereItWasToldToTheBit) {
+TEST(Primitive, EndsBitIdenticalToItsEnd) {
     Arcs arcs(3);
     for (int n = 0; n < 1000; ++n) {
         Primitive p;
@@ -108,7 +108,7 @@ TEST(Primitive, DerivativesAreThoseOfItsPositions) {
     EXPECT_GT(count, 400);
 }
 
-TEST(FeedLength, CountsXyzFirstThenUvwThenTheAngles) {
+TEST(FeedLength, IsAlongXyzThenUvwThenTheAngles) {
     Pose to = flat(3, 4);
     to[geometry::AXIS_U] = 12;
     to[geometry::AXIS_C] = 90;
@@ -136,7 +136,7 @@ TEST(FeedLength, OfAHelixIsTheLengthOfItsCurve) {
     EXPECT_NEAR(feed_length(p).length, length, 1e-4);
 }
 
-TEST(MakeArc, RefusesWhatIsNoArc) {
+TEST(MakeArc, RejectsInvalidArcs) {
     Pose normal;
     normal[2] = 1;
     Primitive p;
@@ -167,7 +167,7 @@ TEST(Extent, OfAFlatArcWithRoundedEndsHasNoThickness) {
     EXPECT_GT(count, 2500);
 }
 
-TEST(Extent, HoldsTheArcAndLittleMore) {
+TEST(Extent, ContainsTheArcAndLittleMore) {
     Arcs arcs(2);
     int count = 0;
     for (int n = 0; n < 3000; ++n) {
@@ -206,7 +206,7 @@ TEST(Extent, HoldsTheArcAndLittleMore) {
     EXPECT_GT(count, 2500);
 }
 
-TEST(Extent, AlongASumOfCoordinatesHoldsTheArcAndLittleMore) {
+TEST(Extent, OfASumOfCoordinatesContainsTheArcAndLittleMore) {
     Arcs arcs(3);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> share(-2, 2);

@@ -93,7 +93,7 @@ Pose xyz(double x, double y) {
     return p;
 }
 
-TEST(RestMap, HasTheDerivativesThatItTells) {
+TEST(RestMap, ReportsItsDerivatives) {
     RestMap map;
     map.set_start(1, 0.5);
     map.set_end(11, 0.2);
@@ -109,7 +109,7 @@ TEST(RestMap, HasTheDerivativesThatItTells) {
     EXPECT_EQ(map.at(0).second, 0);
 }
 
-TEST(Profile, TakesTheTimeOfTheClosedFormOnAStraightLine) {
+TEST(Profile, HasTheClosedFormTimeOnAStraightLine) {
     struct Case {
         double length, velocity, acceleration, jerk;
     };
@@ -214,7 +214,7 @@ TEST(Profile, SpeedsUpWithinAPlanWhenTheFeedIsRaised) {
     }
 }
 
-TEST(Profile, AFeedThatChangesAgainAndAgainDoesNotSplitCellsForEver) {
+TEST(Profile, RepeatedFeedChangesDoNotDivideCellsWithoutEnd) {
     LinePlan line(2000, {{2000, 1e300}});
     std::vector<TimeCell> driven;
     std::size_t most = 0;
@@ -228,7 +228,7 @@ TEST(Profile, AFeedThatChangesAgainAndAgainDoesNotSplitCellsForEver) {
 }
 
 /// The slack of a jerk row grows as the speed falls. It must not reduce the speed to 0.
-TEST(TimeLaw, MakesTheSpeedLeastDownToAPartOfTheStart) {
+TEST(TimeLaw, MinimisesTheSpeedToAFractionOfTheStart) {
     LinePlan line(200, {{200, 1e300}});
     RestMap map;
     map.set_start(-100, 0.1);
@@ -270,7 +270,7 @@ TEST(SpeedPlan, TheFirstCellsOfACourseAreTheSameMotion) {
 }
 
 /// A creep over cells of any length is far within every row, because it is a function of the path.
-TEST(Profile, CreepsAlikeOverCellsOfAnyLength) {
+TEST(Profile, CreepsEquallyOverCellsOfAnyLength) {
     LinePlan line(20, {{7, 1e300}, {7.2, 0.5}, {20, 50}});
     RestMap map;
     map.set_start(0, 0.1);
@@ -311,7 +311,7 @@ TEST(Profile, LimitsACoordinateThatBeginsToMoveSmoothly) {
 }
 
 /// A feed that ends within rounding of the stop must not cause a second point with speed 0.
-TEST(Profile, TakesAFeedThatEndsARoundingBeforeTheStopAsOnePlace) {
+TEST(Profile, TreatsAFeedEndWithinRoundingOfTheStopAsOnePoint) {
     constexpr double END = 475;
     LinePlan line(END, {{END - 3e-12, 50}, {END + 1, 20}});
     Profile profile({0.5});

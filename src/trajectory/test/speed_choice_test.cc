@@ -85,7 +85,7 @@ Driven drive(Chooser *chooser, const Limits &limits, double feed = 80) {
     return out;
 }
 
-TEST(SpeedChoice, WhatIsWithinTheLimitsIsDrivenAsChosen) {
+TEST(SpeedChoice, AChoiceWithinTheLimitsIsExecuted) {
     const Limits limits = even_limits(100, 1000);
     const Driven ours = drive(nullptr, limits);
     ASSERT_TRUE(ours.isDone);
@@ -107,7 +107,7 @@ TEST(SpeedChoice, WhatIsWithinTheLimitsIsDrivenAsChosen) {
     EXPECT_EQ(slow.checker.report(), "");
 }
 
-TEST(SpeedChoice, WhatIsTooMuchStopsThePathWithinTheLimits) {
+TEST(SpeedChoice, AChoiceOutsideTheLimitsStopsThePathWithinTheLimits) {
     const auto spoil = [](Kind kind, const SpeedStretch &s, std::span<ChosenPhase> out) {
         const int count = gentle(s, out, 1, 1);
         switch (kind) {
@@ -143,7 +143,7 @@ TEST(SpeedChoice, WhatIsTooMuchStopsThePathWithinTheLimits) {
     }
 }
 
-TEST(SpeedChoice, WithJerkLimitsTheHighestChosenSpeedIsKept) {
+TEST(SpeedChoice, WithJerkLimitsTheMaximumChosenSpeedIsKept) {
     const Limits limits = even_limits(100, 1000, 20000);
     const Driven ours = drive(nullptr, limits);
     ASSERT_TRUE(ours.isDone);

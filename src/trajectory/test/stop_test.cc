@@ -377,7 +377,7 @@ TEST(Stop, ReachesLowerFeedsWithinTheLimits) {
     });
 }
 
-TEST(Stop, EndsNearerAndGoesOnAgain) {
+TEST(Stop, EndsNearerAndContinues) {
     drive_seeds(5, [](Ride &ride, test::Maker &maker) {
         const std::size_t fixed = some_cells(ride, maker);
         const double whole = ride.part.builder.final_s();

@@ -101,7 +101,7 @@ TapTerms terms(double jerk = NO_JERK_LIMIT) {
     return t;
 }
 
-TEST(TapFollower, KeepsToTheAngleThroughBothReversalsAndEndsAtItsStart) {
+TEST(TapFollower, FollowsTheAngleThroughBothReversalsAndEndsAtItsStart) {
     for (const double rpm : {1000.0, -1000.0, 300.0, 1500.0}) {
         for (const double jerk : {NO_JERK_LIMIT, 20000.0}) {
             SCOPED_TRACE(jerk);
@@ -121,7 +121,7 @@ TEST(TapFollower, KeepsToTheAngleThroughBothReversalsAndEndsAtItsStart) {
     }
 }
 
-TEST(TapFollower, WithAnyEncoderKeepsToTheAngle) {
+TEST(TapFollower, FollowsTheAngleWithAnyEncoder) {
     for (const double jerk : {NO_JERK_LIMIT, 20000.0}) {
         for (const int counts : {20, 60, 200, 1000, 4096, 10000}) {
             for (const double rpm : {200.0, 600.0, 1200.0}) {
@@ -141,7 +141,7 @@ TEST(TapFollower, WithAnyEncoderKeepsToTheAngle) {
 }
 
 /// A reversal would include the backlash of the drive, so the tool must not reverse at the start.
-TEST(TapFollower, TheWayHomeEndsWithoutTurningBack) {
+TEST(TapFollower, TheReturnToTheStartEndsWithoutAReversal) {
     for (int n = 0; n < 60; ++n) {
         SCOPED_TRACE(n);
         TapTerms t = terms();
@@ -164,7 +164,7 @@ TEST(TapFollower, TheWayHomeEndsWithoutTurningBack) {
     }
 }
 
-TEST(TapFollower, TurnsBackAtTheBottomWhereNothingIsKnownOfTheSpindle) {
+TEST(TapFollower, ReversesAtTheBottomIfTheOverrunIsNotKnown) {
     Tapping tapping(1000.0 / 60, 1000.0 / 60 / 0.5);
     ASSERT_TRUE(tapping.run(0, terms()));
     EXPECT_NEAR(tapping.deepest, DEPTH + PITCH * 16.667 * 16.667 / (2 * tapping.ramp), 0.1 * PITCH);
@@ -172,7 +172,7 @@ TEST(TapFollower, TurnsBackAtTheBottomWhereNothingIsKnownOfTheSpindle) {
     EXPECT_EQ(tapping.tap.x(), 0);
 }
 
-TEST(TapFollower, AStopFollowsTheSpindleToItsStand) {
+TEST(TapFollower, AStopFollowsTheSpindleToStandstill) {
     for (int at = 0; at < 4000; at += 97) {
         Tapping tapping(1000.0 / 60, 1000.0 / 60 / 0.5);
         int cycle = 0;
@@ -192,7 +192,7 @@ TEST(TapFollower, AStopFollowsTheSpindleToItsStand) {
     }
 }
 
-TEST(TapFollower, ASpindleThatDoesNotTurnBackIsLostWithinTheRoom) {
+TEST(TapFollower, AMissingReversalIsDetectedWithinTheRangeOfTheLine) {
     Tapping tapping(10, 30);
     tapping.tap.begin(terms(), tapping.reading(30), T);
     double last_x = 0, last_v = 0;
@@ -210,7 +210,7 @@ TEST(TapFollower, ASpindleThatDoesNotTurnBackIsLostWithinTheRoom) {
     EXPECT_LE(tapping.tap.x(), terms().high + 1e-9);
 }
 
-TEST(TapFollower, AnEncoderThatJumpsIsNotFollowed) {
+TEST(TapFollower, AJumpOfTheEncoderIsNotFollowed) {
     Tapping tapping(10, 30);
     int cycle = 0;
     ASSERT_TRUE(tapping.run(30, terms(), [&](Tapping &t) {

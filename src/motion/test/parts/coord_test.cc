@@ -23,7 +23,7 @@ geometry::Pose at(double x) {
     return p;
 }
 
-TEST(CartesianPositionPart, JointsLeadOrThePoseDoes) {
+TEST(CartesianPositionPart, ThePoseFollowsTheJointsOrTheJointsFollowThePose) {
     kinematics::Trivial kinematics;
     ASSERT_TRUE(kinematics.configure("XY"));
     CartesianPosition position;
@@ -40,7 +40,7 @@ TEST(CartesianPositionPart, JointsLeadOrThePoseDoes) {
 }
 
 /// Iterative models return to a position within 1e-4: no step, however slow the joints are.
-TEST(LeadPart, APoseLeadsToWhereTheJointsStandWithinACycleOfThem) {
+TEST(LeadPart, APoseLeadsToTheJointPositionsWithinACycle) {
     const kinematics::CoreXy kinematics;
     for (const double velocity : {100.0, 0.001}) {
         std::array<double, MAX_JOINTS> most{};
@@ -58,7 +58,7 @@ TEST(LeadPart, APoseLeadsToWhereTheJointsStandWithinACycleOfThem) {
     }
 }
 
-TEST(CartesianPositionPart, WhereNobodyKnowsThePoseTheLastOneStandsAndIsNotValid) {
+TEST(CartesianPositionPart, AnUnknownPoseKeepsTheLastValueAndIsNotValid) {
     const kinematics::CoreXy kinematics;
     CartesianPosition position;
     position.assume(0, 5);
@@ -106,7 +106,7 @@ struct RetracingPart : testing::Test {
     }
 };
 
-TEST_F(RetracingPart, GoesBackAndForthOnThePathThatWasDriven) {
+TEST_F(RetracingPart, MovesBackAndForwardOnTheExecutedPath) {
     double least = x;
     for (int n = 0; n < 300; ++n) {
         least = std::min(least, go(true).pose[0]);
@@ -123,7 +123,7 @@ TEST_F(RetracingPart, GoesBackAndForthOnThePathThatWasDriven) {
     EXPECT_FALSE(retracing->isAway());
 }
 
-TEST_F(RetracingPart, APathThatIsDroppedOnTheWayBackEndsWhereItComesToAStand) {
+TEST_F(RetracingPart, APathDroppedInReverseRunEndsWhereItStops) {
     for (int n = 0; n < 300; ++n) {
         go(true);
     }
@@ -137,7 +137,7 @@ TEST_F(RetracingPart, APathThatIsDroppedOnTheWayBackEndsWhereItComesToAStand) {
     EXPECT_TRUE(retracing->isEmpty());
 }
 
-TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort) {
+TEST_F(RetracingPart, AStopInASlowPartOfThePathIsShort) {
     // The path is driven at 20 units/s, then at 5; then it stops.
     constexpr double A = 100;
     limits.path.acceleration.fill(A);
@@ -173,7 +173,7 @@ TEST_F(RetracingPart, AStopWhereThePathWasSlowIsShort) {
     EXPECT_GT(fast, 2 * slow);
 }
 
-TEST_F(RetracingPart, ACopyGoesTheSameWay) {
+TEST_F(RetracingPart, ACopyMovesAlongTheSamePath) {
     for (int n = 0; n < 100; ++n) {
         go(true);
     }
@@ -202,7 +202,7 @@ trajectory::Primitive arc(const geometry::Pose &start, const geometry::Pose &end
     return out;
 }
 
-TEST(HeadingPart, LinesPointAlongTheirWay) {
+TEST(HeadingPart, LinesPointAlongTheirDirection) {
     const auto line = trajectory::make_line(place(1, 1), place(1, 3));
     Heading h = heading_of(line, MotionType::FEED, place(1, 2), false, {});
     EXPECT_EQ(h.g_code, 10);

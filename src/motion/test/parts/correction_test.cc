@@ -49,7 +49,7 @@ struct CorrectionPart : ::testing::Test {
     double at = 0;
 };
 
-TEST_F(CorrectionPart, ATableIsFollowedUpAndDownAndHeldBeyondItsEnds) {
+TEST_F(CorrectionPart, ATableIsFollowedInBothDirectionsAndConstantOutsideItsEnds) {
     load_three();
     EXPECT_EQ(correction.position, 0) << "no motion yet";
     EXPECT_NEAR(go(1), 0.32, 1e-12);
@@ -63,14 +63,14 @@ TEST_F(CorrectionPart, ATableIsFollowedUpAndDownAndHeldBeyondItsEnds) {
     EXPECT_NEAR(go(0), 0.3, 1e-12);
 }
 
-TEST_F(CorrectionPart, ATableTakesThePlaceOfBacklash) {
+TEST_F(CorrectionPart, ATableReplacesBacklash) {
     set(Parameter::JOINT_BACKLASH, 5);
     load_three();
     EXPECT_NEAR(go(5), 0.4, 1e-12);
 }
 
 /// [TRAJ]MAX_LINEAR_JERK applies to lengths.
-TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk) {
+TEST_F(CorrectionPart, AnAngularJointCompensatesBacklashWithItsOwnJerk) {
     limit_jerk();
     set(Parameter::JOINT_BACKLASH, 0.1);
     const auto cycles_of = [&](double path_jerk, double isAngular) {
@@ -92,7 +92,7 @@ TEST_F(CorrectionPart, AnAngularJointTakesUpItsPlayWithItsOwnJerk) {
 }
 
 /// The minimum time for a distance at which speed and acceleration are reached: d / v + v / a + a / j.
-TEST_F(CorrectionPart, ALongPlayIsTakenUpInTheLeastTime) {
+TEST_F(CorrectionPart, LargeBacklashIsCompensatedInTheMinimumTime) {
     limit_jerk();
     constexpr double PLAY = 20, HALF = 0.5;  // fractions of the joint limits
     constexpr int REVERSAL = 2000;
@@ -110,7 +110,7 @@ TEST_F(CorrectionPart, ALongPlayIsTakenUpInTheLeastTime) {
     EXPECT_NEAR(last * CYCLE_S, seconds, 0.005);
 }
 
-TEST_F(CorrectionPart, WhatIsNoTableIsRefused) {
+TEST_F(CorrectionPart, AnInvalidTableIsRejected) {
     EXPECT_EQ(load(1, 3, 0, 0, 0), Reason::OUT_OF_RANGE) << "not the first one";
     EXPECT_EQ(load(0, MAX_SCREW_POINTS + 1, 0, 0, 0), Reason::OUT_OF_RANGE);
     EXPECT_EQ(load(0, 3, std::numeric_limits<double>::quiet_NaN(), 0, 0), Reason::NOT_A_NUMBER);
@@ -165,7 +165,7 @@ TEST_F(CorrectionPart, ATableIsFollowedWithinHalfTheJerkOfTheJoint) {
     EXPECT_GT(checker.worst_jerk(), 0.4);
 }
 
-TEST_F(CorrectionPart, BacklashIsTakenUpWithinHalfTheJerkOfTheJoint) {
+TEST_F(CorrectionPart, BacklashIsCompensatedWithinHalfTheJerkOfTheJoint) {
     set(Parameter::JOINT_BACKLASH, 0.4);
     limit_jerk();
     testing::LimitChecker checker({{V / 2, A / 2, J / 2}}, CYCLE_S);
@@ -175,7 +175,7 @@ TEST_F(CorrectionPart, BacklashIsTakenUpWithinHalfTheJerkOfTheJoint) {
     EXPECT_EQ(go(20), 0.2);
 }
 
-TEST_F(CorrectionPart, ASlideIsWhereItIsToBeHoweverSoonTheJointTurnsBack) {
+TEST_F(CorrectionPart, TheSlideIsAtItsPositionHoweverSoonTheJointReverses) {
     constexpr double PLAY = 0.4;
     set(Parameter::JOINT_BACKLASH, PLAY);
     limit_jerk();
@@ -207,7 +207,7 @@ TEST_F(CorrectionPart, ASlideIsWhereItIsToBeHoweverSoonTheJointTurnsBack) {
 
 /// A slide with play on an uneven screw, against which the joint stops at full speed: a motor that came back
 /// from past its position would leave it there.
-TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe) {
+TEST_F(CorrectionPart, ASlideWithBacklashOnAScrewWithErrorsIsAtItsPosition) {
     constexpr double PLAY = 0.14, WAVE_MM = 100, UNEVEN = 0.15, PITCH = 0.5;
     const auto uneven = [](double x) { return UNEVEN * std::sin(x * 2 * M_PI / WAVE_MM); };
     limit_jerk();
@@ -241,7 +241,7 @@ TEST_F(CorrectionPart, ASlideWithPlayOnAnUnevenScrewIsWhereItIsToBe) {
     }
 }
 
-TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest) {
+TEST_F(CorrectionPart, SwitchedOffDuringCompensationItStopsAndContinuesFromStandstill) {
     set(Parameter::JOINT_BACKLASH, 0.4);
     for (int n = 1; n <= 10; ++n) {
         step(correction, settings, 0, 0.01 * n, CYCLE_S);
@@ -262,7 +262,7 @@ TEST_F(CorrectionPart, SwitchedOffInTheMiddleItStandsAndGoesOnFromRest) {
 }
 
 /// The earlier speed must not enter the next move.
-TEST_F(CorrectionPart, SwitchedOffBetweenTheSidesOfATableItGoesOnFromRest) {
+TEST_F(CorrectionPart, SwitchedOffBetweenTheSidesOfATableItContinuesFromStandstill) {
     load_three();
     go(5);
     double place = 5;
@@ -280,7 +280,7 @@ TEST_F(CorrectionPart, SwitchedOffBetweenTheSidesOfATableItGoesOnFromRest) {
     EXPECT_LE(std::abs(correction.position - stood) / CYCLE_S, A * CYCLE_S);
 }
 
-TEST_F(CorrectionPart, MovedByHandWhileOffTheTableGoesAlong) {
+TEST_F(CorrectionPart, TheTableFollowsAManualMoveWhileTheMachineIsOff) {
     load_three();
     go(5);
     follow(correction, 10);
@@ -289,7 +289,7 @@ TEST_F(CorrectionPart, MovedByHandWhileOffTheTableGoesAlong) {
     EXPECT_NEAR(go(10), 0.5, 1e-12);
 }
 
-TEST_F(CorrectionPart, AZeroThatIsFoundTellsHowMuchMoreIsAdded) {
+TEST_F(CorrectionPart, RenumberingReportsTheChangeOfTheCorrection) {
     load_three();
     go(5);
     EXPECT_NEAR(renumber(correction, 10), 0.1, 1e-12);
@@ -300,7 +300,7 @@ TEST_F(CorrectionPart, AZeroThatIsFoundTellsHowMuchMoreIsAdded) {
 
 /// A rotary joint after many revolutions: the position is less precise there, and rounding may move a stopped
 /// joint.
-TEST_F(CorrectionPart, FarOutTheRoundingOfAStopTurnsNothingBack) {
+TEST_F(CorrectionPart, RoundingOfAStopAtALargePositionCausesNoReversal) {
     constexpr double PLAY = 0.3;
     set(Parameter::JOINT_BACKLASH, PLAY);
     for (const double sense : {1.0, -1.0}) {

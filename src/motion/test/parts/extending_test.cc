@@ -52,7 +52,7 @@ concept TakenByOutputs = requires(MachineOutputs &outputs, const Command &comman
     { outputs.take(command) } -> std::same_as<CommandResult>;
 };
 
-TEST(ExtendingMotion, TheNewCommandDoesWhatItSaysAndRefusesWhatIsNotThere) {
+TEST(ExtendingMotion, TheNewCommandWorksAndRejectsAMissingOutput) {
     MachineOutputs outputs(4, 0);
     outputs.take(SetDigitalOutput{0, true});
     outputs.take(SetDigitalOutput{2, true});
@@ -92,7 +92,7 @@ std::string file_text(const std::string &path) {
     return text.str();
 }
 
-TEST(ExtendingMotion, ThePageShowsWhatIsCompiledHereAndLinesThatStand) {
+TEST(ExtendingMotion, ThePageShowsTheCompiledCodeAndExistingLines) {
     const std::string source = file_text("/src/motion/test/parts/extending_test.cc");
     const std::string page = file_text("/docs/developer/extending/motion_command.md");
     for (const std::string what : {"declaration", "behaviour"}) {

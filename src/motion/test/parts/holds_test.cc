@@ -9,7 +9,7 @@
 namespace mw::motion {
 namespace {
 
-TEST(HoldsPart, PauseAndFeedHoldKeepThePathStanding) {
+TEST(HoldsPart, PauseAndFeedHoldKeepThePathStopped) {
     Holds holds;
     holds.step({});
     EXPECT_FALSE(holds.isHoldWanted());
@@ -26,7 +26,7 @@ TEST(HoldsPart, PauseAndFeedHoldKeepThePathStanding) {
     EXPECT_TRUE(holds.isHoldWanted()) << "feed inhibit cannot be switched off";
 }
 
-TEST(HoldsPart, AStepPausesWhereItEnds) {
+TEST(HoldsPart, AStepPausesAtItsEnd) {
     Holds holds;
     holds.take(Pause{});
     holds.take(StepOnce{});
@@ -38,7 +38,7 @@ TEST(HoldsPart, AStepPausesWhereItEnds) {
     EXPECT_TRUE(holds.isPaused());
 }
 
-TEST(HoldsPart, AStopEndsPausesAndStepsAndKeepsTheScales) {
+TEST(HoldsPart, AStopEndsPausesAndStepsAndKeepsTheOverrides) {
     Holds holds;
     holds.take(SetScale{Scale::FEED, 0, 0.5}, 1.2);
     holds.take(Pause{});
@@ -53,7 +53,7 @@ TEST(HoldsPart, AStopEndsPausesAndStepsAndKeepsTheScales) {
     EXPECT_EQ(holds.net_feed_scale(), 0.5);
 }
 
-TEST(HoldsPart, AdaptiveFeedCountsOnlyWhereItIsOnAndNeverWhenItIsNoNumber) {
+TEST(HoldsPart, AdaptiveFeedCountsOnlyIfEnabledAndFinite) {
     Holds holds;
     holds.take(SetScale{Scale::FEED, 0, 0.5}, 1.2);
     holds.step({0.25, false, false, 0});
@@ -69,7 +69,7 @@ TEST(HoldsPart, AdaptiveFeedCountsOnlyWhereItIsOnAndNeverWhenItIsNoNumber) {
     EXPECT_GT(holds.reverse_rate(), 0);
 }
 
-TEST(HoldsPart, ReverseRunNeedsAWayBack) {
+TEST(HoldsPart, ReverseRunNeedsARecordedPath) {
     Holds holds;
     EXPECT_EQ(holds.take(SetReverse{true}, false).reason, Reason::NO_WAY_BACK);
     holds.step({});
@@ -90,7 +90,7 @@ TEST(HoldsPart, ReverseRunNeedsAWayBack) {
     EXPECT_FALSE(holds.isReverseWanted()) << "a stop ends it";
 }
 
-TEST(HoldsPart, ScalesBeyondTheirRangeAreRefused) {
+TEST(HoldsPart, ScalesOutsideTheirRangeAreRejected) {
     Holds holds;
     EXPECT_EQ(holds.take(SetScale{Scale::FEED, 0, 1.3}, 1.2).reason, Reason::OUT_OF_RANGE);
     EXPECT_EQ(holds.take(SetScale{Scale::RAPID, 0, 1.1}, 1.2).reason, Reason::OUT_OF_RANGE);
@@ -102,7 +102,7 @@ TEST(HoldsPart, ScalesBeyondTheirRangeAreRefused) {
     EXPECT_EQ(holds.jog_scale(), 1.0);
 }
 
-TEST(HoldsPart, TheStatusShowsEachOfThem) {
+TEST(HoldsPart, TheStatusShowsEachHold) {
     Holds holds;
     const auto shown = [&](bool Status::*field) {
         Status status;

@@ -32,7 +32,7 @@ struct HomingDrivePart : testing::Test {
     }
 };
 
-TEST_F(HomingDrivePart, BeginsWhenNothingMovesAnyMore) {
+TEST_F(HomingDrivePart, BeginsAtStandstill) {
     ASSERT_EQ(drive.take(Home{-1}, conditions).reason, Reason::NONE);
     EXPECT_TRUE(drive.isUnderWay());
     conditions.isMoving = true;
@@ -47,7 +47,7 @@ TEST_F(HomingDrivePart, BeginsWhenNothingMovesAnyMore) {
     EXPECT_FALSE(drive.isUnderWay());
 }
 
-TEST_F(HomingDrivePart, EachReasonAgainstHomingIsTold) {
+TEST_F(HomingDrivePart, EachReasonAgainstHomingIsReported) {
     EXPECT_EQ(drive.take(Home{2}, conditions).reason, Reason::NO_SUCH_JOINT);
     conditions.isInhibited = true;
     EXPECT_EQ(drive.take(Home{0}, conditions).reason, Reason::HOMING_INHIBITED);
@@ -57,7 +57,7 @@ TEST_F(HomingDrivePart, EachReasonAgainstHomingIsTold) {
     EXPECT_EQ(drive.take(Home{0}, conditions).reason, Reason::NOT_ENABLED);
 }
 
-TEST_F(HomingDrivePart, AJointThatIsLeftOutIsNotHomedWhicheverItIs) {
+TEST_F(HomingDrivePart, AnInactiveJointIsNotHomed) {
     for (const int joint : {0, 1}) {
         conditions.inactive = 1U << joint;
         const CommandResult verdict = drive.take(Home{joint}, conditions);
@@ -68,7 +68,7 @@ TEST_F(HomingDrivePart, AJointThatIsLeftOutIsNotHomedWhicheverItIs) {
 }
 
 /// A latch velocity above the joint's maximum is limited, and backlash is compensated within its travel.
-TEST_F(HomingDrivePart, PlayIsTakenUpAtNoMoreThanTheSpeedOfTheJoint) {
+TEST_F(HomingDrivePart, BacklashIsCompensatedWithinTheSpeedOfTheJoint) {
     const auto set = [&](Parameter p, double value) {
         settings.set({static_cast<std::uint16_t>(p), 0, value}, 2, 1);
     };
@@ -104,7 +104,7 @@ TEST_F(HomingDrivePart, VolatileHomesAreLostWithPower) {
     EXPECT_EQ(drive.homed_joints(), 0U);
 }
 
-TEST_F(HomingDrivePart, WhatFailsIsToldOnceAndWhatIsAbortedIsNot) {
+TEST_F(HomingDrivePart, AFailureIsReportedOnceAndAnAbortIsNot) {
     settings.set({static_cast<std::uint16_t>(Parameter::JOINT_HOME_SEARCH_VEL), 0, 5}, 2, 1);
     drive.configure(0, settings);  // has a search velocity but no latch velocity
     drive.take(Home{0}, conditions);
@@ -119,7 +119,7 @@ TEST_F(HomingDrivePart, WhatFailsIsToldOnceAndWhatIsAbortedIsNot) {
     EXPECT_FALSE(drive.isUnderWay());
 }
 
-TEST_F(HomingDrivePart, AModuleOfAUserThatGivesUpHasFailedAndOneThatIsToldToEndHasNot) {
+TEST_F(HomingDrivePart, AUserModuleThatGivesUpFailsAndAnAbortedOneDoesNot) {
     ForeignModule module;
     drive = HomingDrive(1e-3, &module);
     drive.use_joints(2, 2);

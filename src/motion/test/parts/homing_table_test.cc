@@ -373,7 +373,7 @@ TEST(HomingTable, ThePageShowsTheTable) {
                                                            << made;
 }
 
-TEST(HomingTable, EveryEventInEveryStateDoesWhatThePageSays) {
+TEST(HomingTable, EveryEventInEveryStateActsAsThePageDocuments) {
     const std::string made = made_matrix();
     EXPECT_NE(page().find("\n" + made), std::string::npos) << "docs/integrator/homing.md is to have:\n"
                                                            << made;

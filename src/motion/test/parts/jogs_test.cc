@@ -34,7 +34,7 @@ void run(Jogs &jogs, const JogTarget &target, int cycles) {
     }
 }
 
-TEST(JogsPart, EachReasonAgainstAJogIsTold) {
+TEST(JogsPart, EachReasonAgainstAJogIsReported) {
     Jogs jogs = make();
     const auto reason = [&](auto change, JogTarget target = JOINT) {
         JogSituation s = free_mode();
@@ -90,7 +90,7 @@ TEST(JogsPart, ALeaseIsRenewedByTheSameCommandAndEndsOnce) {
     EXPECT_EQ(jogs.take(JogContinuous{JOINT, 8, 0.2, true}, s).reason, Reason::NO_JOG_TO_RENEW);
 }
 
-TEST(JogsPart, WhatStopsOrReplacesAJogEndsItsLease) {
+TEST(JogsPart, AStopOrANewJogEndsTheLease) {
     const auto isLeft = [](auto change) {
         Jogs jogs = make();
         EXPECT_EQ(jogs.take(JogContinuous{JOINT, 5, 0.1}, free_mode()).reason, Reason::NONE);
@@ -121,14 +121,14 @@ TEST(JogsPart, IncrementsAddUpAndStayWithinTheRange) {
     EXPECT_EQ(jogs.at(JOINT).motion().position, 8);
 }
 
-TEST(JogsPart, FromOutsideTheLimitsOneMovesBackIn) {
+TEST(JogsPart, AJogFromOutsideTheLimitsMovesBackInside) {
     Jogs jogs = make();
     jogs.at(JOINT).reset(12);
     EXPECT_EQ(jogs.take(JogIncremental{JOINT, 20, 1}, free_mode()).reason, Reason::BEYOND_SOFT_LIMIT);
     EXPECT_EQ(jogs.take(JogIncremental{JOINT, 20, -1}, free_mode()).reason, Reason::NONE);
 }
 
-TEST(JogsPart, AWheelCountsTurnsAcrossTheWrapAndGivesWayToKeys) {
+TEST(JogsPart, AWheelCountsAcrossTheWrapAndYieldsToKeys) {
     Jogs jogs = make();
     WheelInput wheel;
     wheel.isEnabled = true;
@@ -146,7 +146,7 @@ TEST(JogsPart, AWheelCountsTurnsAcrossTheWrapAndGivesWayToKeys) {
     EXPECT_EQ(jogs.at(JOINT).turned(wheel), 0.0) << "a key is pressed";
 }
 
-TEST(JogsPart, AStopOfAWheelTakesAllTheAcceleration) {
+TEST(JogsPart, AStopOfAWheelUsesTheFullAcceleration) {
     for (const double jerk : {0.0, 2e4}) {
         JogSituation s = free_mode();
         s.limits.jerk = jerk;
@@ -193,7 +193,7 @@ TEST(JogsPart, OverriddenLimitsEndWithTheJog) {
     EXPECT_EQ(jogs.at(JOINT).source(), JogSource::NONE);
 }
 
-TEST(JogsPart, OneJoggedJointOrAxisIsEnoughToTellOfAJog) {
+TEST(JogsPart, OneJoggedJointOrAxisCountsAsAJog) {
     for (const bool isJoint : {true, false}) {
         Jogs jogs = make();
         jogs.set_axes(0b111);
@@ -348,7 +348,7 @@ TEST(TeleopPart, TheJointPositionsNearestToTheCurrentOnesAreUsed) {
     }
 }
 
-TEST(TeleopPart, AJogOfATableStopsBeforeAJointLeavesItsRange) {
+TEST(TeleopPart, AJogOfATableStopsBeforeAJointExceedsItsRange) {
     const kinematics::RotaryTable table;
     Settings settings;
     const auto set = [&](Parameter p, int j, double v) {

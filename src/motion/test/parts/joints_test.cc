@@ -37,7 +37,7 @@ struct JointsPart : testing::Test {
     }
 };
 
-TEST_F(JointsPart, SwitchedOnTheCommandIsTheFeedback) {
+TEST_F(JointsPart, TheCommandIsTheFeedbackAtSwitchOn) {
     in.joint[0].motor_pos_fb = 12.5;
     joints.read_feedback(in);
     EXPECT_EQ(fault_of(0), JointFault::FOLLOWING_ERROR);
@@ -81,7 +81,7 @@ TEST_F(JointsPart, LimitSwitchesAndAmplifiersAreFaults) {
     EXPECT_EQ(joints.check_start(in, true).reason, Reason::AMP_FAULT);
 }
 
-TEST_F(JointsPart, BacklashIsTakenUpWithinTheJointsOwnLimits) {
+TEST_F(JointsPart, BacklashIsCompensatedWithinTheLimitsOfTheJoint) {
     set(Parameter::JOINT_BACKLASH, 0, 0.2);
     joints.switch_on();
     double last = 0, fastest = 0;
@@ -102,7 +102,7 @@ TEST_F(JointsPart, BacklashIsTakenUpWithinTheJointsOwnLimits) {
     EXPECT_DOUBLE_EQ(joints[0].motor_pos_cmd - joints[0].pos_cmd, -0.1);
 }
 
-TEST_F(JointsPart, AZeroThatIsFoundMovesNumbersAndNoMotor) {
+TEST_F(JointsPart, AHomedZeroChangesPositionsAndMovesNoMotor) {
     joints.switch_on();
     joints.follow(0, 3, T);
     joints.output(settings, true, T);
@@ -115,7 +115,7 @@ TEST_F(JointsPart, AZeroThatIsFoundMovesNumbersAndNoMotor) {
     EXPECT_EQ(joints[1].pos_fb, 7) << "motor position 0";
 }
 
-TEST_F(JointsPart, SwitchedOffTheCommandFollowsTheMotor) {
+TEST_F(JointsPart, TheCommandFollowsTheMotorWhileOff) {
     joints.switch_on();
     in.joint[0].motor_pos_fb = 4;
     joints.read_feedback(in);
@@ -128,7 +128,7 @@ TEST_F(JointsPart, SwitchedOffTheCommandFollowsTheMotor) {
     EXPECT_EQ(joints.take(SetJointActive{0, false}, {false, true, true}).reason, Reason::HOMING);
 }
 
-TEST_F(JointsPart, AJointThatIsLeftOutKeepsItsPlaceWhileItsAmplifierIsOn) {
+TEST_F(JointsPart, AnInactiveJointKeepsItsPositionWhileItsAmplifierIsOn) {
     set(Parameter::JOINT_BACKLASH, 0, 0.2);
     joints.switch_on();
     for (int n = 1; n <= 1000; ++n) {
@@ -157,7 +157,7 @@ TEST_F(JointsPart, AJointThatIsLeftOutKeepsItsPlaceWhileItsAmplifierIsOn) {
     EXPECT_EQ(joints[0].motor_pos_cmd, in.joint[0].motor_pos_fb);
 }
 
-TEST_F(JointsPart, AJointThatDoesMoreThanItCanIsFound) {
+TEST_F(JointsPart, AJointThatExceedsItsLimitsIsDetected) {
     AxisMap map;
     map.kind = AxisMap::Kind::UNKNOWN;
     map.num_joints = 2;
@@ -179,7 +179,7 @@ TEST_F(JointsPart, AJointThatDoesMoreThanItCanIsFound) {
     EXPECT_EQ(joints.find_overrun(limits).joint, -1) << "while it returns";
 }
 
-TEST_F(JointsPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf) {
+TEST_F(JointsPart, PinsAndStatusShowEachValue) {
     Joint joint;
     int number = 1;
     for (double *value : {&joint.pos_cmd, &joint.pos_fb, &joint.vel_cmd, &joint.acc_cmd, &joint.coarse_pos,
@@ -223,7 +223,7 @@ TEST_F(JointsPart, PinsAndStatusShowEachOfWhatTheyAreMadeOf) {
     }
 }
 
-TEST_F(JointsPart, HomedJointsAreOnTheirSoftLimitsFromThereOn) {
+TEST_F(JointsPart, SoftLimitFlagsApplyToHomedJointsOnly) {
     Outputs out;
     out.status.joint[0].min_limit = -100;
     out.status.joint[0].max_limit = 100;

@@ -26,7 +26,7 @@ TEST(PowerPart, AStopBeginsOnceAndEndsWithPower) {
     EXPECT_FALSE(power.isEnabled() || power.isStopping());
 }
 
-TEST(PowerPart, ModesChangeAtRestAndCartesianOnesWhereThePoseIsKnown) {
+TEST(PowerPart, ModesChangeAtStandstillAndCartesianOnesNeedAKnownPose) {
     const Power power;
     EXPECT_EQ(power.check_mode(Mode::FREE, {true, true, true, false}), Reason::NONE) << "nothing changes";
     EXPECT_EQ(power.check_mode(Mode::COORD, {true, false, false, false}), Reason::HOMING);
@@ -36,7 +36,7 @@ TEST(PowerPart, ModesChangeAtRestAndCartesianOnesWhereThePoseIsKnown) {
     EXPECT_EQ(power.check_mode(Mode::COORD, {false, false, false, false}), Reason::NONE);
 }
 
-TEST(WatchdogPart, ATaskThatStandsStillIsFoundOnceItsTimeIsOver) {
+TEST(WatchdogPart, AStoppedTaskIsDetectedAfterItsTimeout) {
     Watchdog watchdog;
     EXPECT_EQ(watchdog.take(SetWatchdog{true, 0}).reason, Reason::OUT_OF_RANGE);
     ASSERT_EQ(watchdog.take(SetWatchdog{true, 0.01}).reason, Reason::NONE);
@@ -53,7 +53,7 @@ TEST(WatchdogPart, ATaskThatStandsStillIsFoundOnceItsTimeIsOver) {
     EXPECT_FALSE(watchdog.isTaskLost());
 }
 
-TEST(WatchdogPart, TheKernelsWordCountsWithoutAnyTime) {
+TEST(WatchdogPart, AKernelReportIsUsedWithoutATimeout) {
     Watchdog watchdog;
     EXPECT_TRUE(watchdog.step({1, 0, true}, 1e-3));
     EXPECT_TRUE(watchdog.isTaskLost());
@@ -74,13 +74,13 @@ double found_after_s(double looked_s) {
     return 0;
 }
 
-TEST(WatchdogPart, TimeInWhichNoOrdinaryThreadRunsCountsAQuarter) {
+TEST(WatchdogPart, TimeWithoutAnyOrdinaryThreadCountsAQuarter) {
     EXPECT_NEAR(found_after_s(10), 0.5, 0.01);
     EXPECT_NEAR(found_after_s(0), 0.1 + 4 * 0.4, 0.06);
     EXPECT_NEAR(found_after_s(0.2), 0.3 + 4 * 0.2, 0.06);
 }
 
-TEST(WatchdogPart, AGapOfTheServoThreadIsFoundOnce) {
+TEST(WatchdogPart, AGapOfTheServoThreadIsDetectedOnce) {
     Watchdog watchdog;
     EXPECT_EQ(watchdog.gap_s(5000000000), 0) << "the first cycle";
     EXPECT_EQ(watchdog.gap_s(5001000000), 0);
@@ -108,7 +108,7 @@ TEST(OutputsPart, OutputsAreSetAtOnceAndByThePath) {
     EXPECT_EQ(out->status.digital_out, 12U);
 }
 
-TEST(OutputsPart, AStopThatPassesAPlaceOfThePathSwitchesNothingOn) {
+TEST(OutputsPart, AStopThatPassesAPointOfThePathSwitchesNothing) {
     MachineOutputs outputs(4, 4);
     trajectory::PathEvent event;
     event.index = 2;

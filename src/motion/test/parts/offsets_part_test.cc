@@ -32,7 +32,7 @@ struct OffsetsPart : ::testing::Test {
     }
 };
 
-TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain) {
+TEST_F(OffsetsPart, TheTargetIsKnownACycleBeforeAndCheckedAgain) {
     in.axis_offset[0].counts = 150;
     go(1);
     EXPECT_EQ(offsets.pose()[0], 0);
@@ -50,7 +50,7 @@ TEST_F(OffsetsPart, WhereItGoesToIsSeenACycleBeforeAndWeighedAgain) {
 }
 
 /// A change of the kinematics or of a ratio is not a wheel count.
-TEST_F(OffsetsPart, WhatWasTurnedBeforeAnAxisCouldHaveOneMovesNothing) {
+TEST_F(OffsetsPart, CountsBeforeAnAxisCanHaveAnOffsetMoveNothing) {
     for (const bool isEnabled : {true, false}) {
         in.axis_offset[1].isEnabled = isEnabled;
         in.axis_offset[1].scale = 0.1;
@@ -76,7 +76,7 @@ TEST_F(OffsetsPart, WhatWasTurnedBeforeAnAxisCouldHaveOneMovesNothing) {
     }
 }
 
-TEST_F(OffsetsPart, NoMoveThatComesLaterMakesItGoBack) {
+TEST_F(OffsetsPart, NoLaterMoveReversesAnOffset) {
     in.axis_offset[0].counts = 100;
     go(3000);
     programmed.axes.high[0] = 15;
@@ -84,7 +84,7 @@ TEST_F(OffsetsPart, NoMoveThatComesLaterMakesItGoBack) {
     EXPECT_NEAR(offsets.pose()[0], 10, 1e-9);
 }
 
-TEST_F(OffsetsPart, CountsWrapAndWhatIsNoNumberCountsForNothing) {
+TEST_F(OffsetsPart, CountsWrapAndNonFiniteValuesAreIgnored) {
     in.axis_offset[0].counts = std::numeric_limits<std::int32_t>::max();
     offsets.start_at_zero(in);
     in.axis_offset[0].counts = std::numeric_limits<std::int32_t>::min() + 9;
@@ -104,7 +104,7 @@ TEST_F(OffsetsPart, CountsWrapAndWhatIsNoNumberCountsForNothing) {
 
 /// Belts: travel of a joint that X uses is not available for Y, nor for the program. Tested in both
 /// directions.
-TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom) {
+TEST_F(OffsetsPart, TwoOffsetsOfOneJointNeverUseTheSameTravel) {
     const kinematics::CoreXy corexy;
     limits.offset[1] = {10, 100, 0};
     limits.low[1] = -20;
@@ -140,7 +140,7 @@ TEST_F(OffsetsPart, TwoOfOneJointNeverTakeTheSameRoom) {
     }
 }
 
-TEST_F(OffsetsPart, WhatTheyHaveOfAJointIsTakenOffForJogs) {
+TEST_F(OffsetsPart, TheirShareOfAJointIsSubtractedForJogs) {
     const kinematics::CoreXy corexy;
     limits.joints.low.fill(-30);
     limits.joints.high.fill(30);

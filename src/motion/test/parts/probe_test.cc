@@ -26,7 +26,7 @@ ProbeInputs probing(bool isClosed, bool isAway = false, trajectory::Sequence mov
     return in;
 }
 
-TEST(ProbePart, AProbingMoveEndsWhereItTripsAndOnlyOnce) {
+TEST(ProbePart, AProbingMoveEndsOnceWhenItTrips) {
     TouchProbe probe;
     EXPECT_EQ(probe.step(probing(false), at(1)), ProbeEvent::NONE);
     EXPECT_EQ(probe.step(probing(true), at(2)), ProbeEvent::FOUND);
@@ -41,7 +41,7 @@ TEST(ProbePart, AMoveAwayEndsWhereContactIsLost) {
     EXPECT_EQ(probe.step(probing(false, true), at(2)), ProbeEvent::FOUND);
 }
 
-TEST(ProbePart, EachProbingMoveBeginsAnew) {
+TEST(ProbePart, EachProbingMoveStartsWithoutAContact) {
     TouchProbe probe;
     probe.step(probing(true), at(1));
     EXPECT_EQ(probe.step(probing(true, false, 6), at(4)), ProbeEvent::FOUND);
@@ -50,7 +50,7 @@ TEST(ProbePart, EachProbingMoveBeginsAnew) {
     EXPECT_FALSE(status_of(probe).isProbeTripped);
 }
 
-TEST(ProbePart, TouchedInAnotherMoveIsTold) {
+TEST(ProbePart, AContactInAnotherMoveIsReported) {
     TouchProbe probe;
     ProbeInputs in;
     in.isClosed = true;
@@ -61,7 +61,7 @@ TEST(ProbePart, TouchedInAnotherMoveIsTold) {
     EXPECT_EQ(probe.step(in, at(0)), ProbeEvent::NONE) << "it is the edge that counts";
 }
 
-TEST(ProbePart, BrakingBehindAContactIsNoTouch) {
+TEST(ProbePart, BrakingAfterAContactIsNoNewContact) {
     TouchProbe probe;
     probe.step(probing(true), at(1));
     ProbeInputs in;
@@ -71,7 +71,7 @@ TEST(ProbePart, BrakingBehindAContactIsNoTouch) {
 
 /// An earlier trip does not excuse contact while nothing brakes; braking does not excuse contact without a
 /// trip.
-TEST(ProbePart, ATripOrAStopAloneExcusesNoContact) {
+TEST(ProbePart, ATripOrAStopAloneDoesNotExcuseAContact) {
     TouchProbe probe;
     ProbeInputs in;
     in.isClosed = in.isMoving = in.isDropping = true;

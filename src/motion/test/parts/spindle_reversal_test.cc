@@ -88,7 +88,7 @@ TEST_F(Reversals, GiveTheOverrunAtEverySpeed) {
 
 /// The calculated overrun matches the measurement and scales at least with the speed and at most with its
 /// square.
-TEST_F(Reversals, StayWithinTheMeasurementWhateverItIs) {
+TEST_F(Reversals, StayWithinAnyMeasurement) {
     std::mt19937_64 random(3);
     const auto real = [&](double low, double high) {
         return std::exp(std::uniform_real_distribution<double>(std::log(low), std::log(high))(random));
@@ -151,7 +151,7 @@ TEST_F(Reversals, APauseAtStandstillIsNoPartOfTheBraking) {
     }
 }
 
-TEST_F(Reversals, OneThatIsTakenBackTeachesNothing) {
+TEST_F(Reversals, ACancelledReversalIsIgnored) {
     plants::SpindlePlant spindle(drive_of(33));
     drive(spindle, 16, 2000);
     const auto before = brakings_of(reversal, 0);
@@ -163,7 +163,7 @@ TEST_F(Reversals, OneThatIsTakenBackTeachesNothing) {
 
 /// The spindle accelerates until its drive reacts, so the reversal is not measured from the speed at the
 /// command.
-TEST_F(Reversals, OneOfASpindleThatIsStillAcceleratingTeachesNothing) {
+TEST_F(Reversals, AReversalWhileAcceleratingIsIgnored) {
     plants::SpindlePlant spindle(drive_of(150, 0.04));
     drive(spindle, 0, 100);
     drive(spindle, 25, 100);
@@ -176,7 +176,7 @@ TEST_F(Reversals, OneOfASpindleThatIsStillAcceleratingTeachesNothing) {
     EXPECT_TRUE(reversal.learned[1].isKnown());
 }
 
-TEST_F(Reversals, OneWithinACycleHasARamp) {
+TEST_F(Reversals, AReversalWithinACycleHasARamp) {
     plants::SpindlePlant spindle(drive_of(0));
     drive(spindle, 10, 1000);
     drive(spindle, -10, 1000);
@@ -187,7 +187,7 @@ TEST_F(Reversals, OneWithinACycleHasARamp) {
 }
 
 /// With a period that adds up without rounding.
-TEST_F(Reversals, AreWaitedForUpToAMinuteAndNoLonger) {
+TEST_F(Reversals, AreMeasuredForAtMostAMinute) {
     constexpr double PERIOD_S = 0.5, SPEED = 10, OVERRUN = 4;
     constexpr int MINUTE = 120;
     for (const int late : {0, 1}) {

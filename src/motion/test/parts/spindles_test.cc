@@ -30,7 +30,7 @@ struct SpindlesPart : testing::Test {
     }
 };
 
-TEST_F(SpindlesPart, TurnOnlyWhileTheMachineIsOn) {
+TEST_F(SpindlesPart, RunOnlyWhileTheMachineIsOn) {
     EXPECT_EQ(spindles.take(SpindleOn{0, 500}, false).reason, Reason::NOT_ENABLED);
     EXPECT_EQ(spindles.take(SpindleOn{2, 500}, true).reason, Reason::NO_SUCH_SPINDLE);
     EXPECT_EQ(spindles.take(SpindleOn{0, NAN}, true).reason, Reason::NOT_A_NUMBER);
@@ -42,7 +42,7 @@ TEST_F(SpindlesPart, TurnOnlyWhileTheMachineIsOn) {
 }
 
 /// M3 and M4 release the brake and M5 engages it. It may be released to turn the spindle by hand.
-TEST_F(SpindlesPart, TheBrakeIsOffWhileOneTurns) {
+TEST_F(SpindlesPart, TheBrakeIsOffWhileTheSpindleRuns) {
     const auto isBrakeOn = [&] { return spindles[0].isBrakeOn; };
     for (const double speed : {300.0, -300.0}) {
         spindles.take(SpindleBrake{0, true});
@@ -103,7 +103,7 @@ TEST_F(SpindlesPart, ConstantSurfaceSpeedKeepsTheLimitsOfTheSpindle) {
 
 /// Each spindle has its command, its limits and its override: a command to one spindle does not affect the
 /// others.
-TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther) {
+TEST_F(SpindlesPart, EightSpindlesAreIndependent) {
     spindles = Spindles(MAX_SPINDLES);
     std::mt19937 random(8);
     const auto real = [&](double low, double high) {
@@ -157,7 +157,7 @@ TEST_F(SpindlesPart, EightOfThemKnowNothingOfEachOther) {
     }
 }
 
-TEST_F(SpindlesPart, AnInhibitedSpindleStandsAndGoesOnByItself) {
+TEST_F(SpindlesPart, AnInhibitedSpindleStopsAndRestartsByItself) {
     spindles.take(SpindleOn{0, 300}, true);
     in.spindle[0].isInhibited = true;
     EXPECT_EQ(rpm(), 0);
@@ -184,7 +184,7 @@ TEST_F(SpindlesPart, OrientationLocksOrFailsOnce) {
 }
 
 /// The program that turns the spindle continues while spindle.N.orient is on.
-TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger) {
+TEST_F(SpindlesPart, ADriveThatCannotOrientEndsTheRequest) {
     const auto orient_pin = [&] {
         Outputs out;
         spindles.fill(in, true, out);
@@ -204,7 +204,7 @@ TEST_F(SpindlesPart, ADriveThatCannotOrientIsAskedNoLonger) {
     EXPECT_EQ(spindles[0].orient_state, Spindles::ORIENT_FAULTED) << "until the next request";
 }
 
-TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith) {
+TEST_F(SpindlesPart, ATapReversesTheSpindleWithTheOverrideOfItsStart) {
     spindles.take(SpindleOn{0, 300}, true);
     spindles.take(SetScale{Scale::SPINDLE, 0, 1.2});
     tap = {0, 1};
@@ -223,7 +223,7 @@ TEST_F(SpindlesPart, ATapTurnsItBackAtTheOverrideThatItBeganWith) {
     EXPECT_EQ(rpm(), 150) << "now the override holds";
 }
 
-TEST_F(SpindlesPart, ATapThatIsStoppedLeavesItOff) {
+TEST_F(SpindlesPart, AStoppedTapLeavesTheSpindleOff) {
     spindles.take(SpindleOn{0, 300}, true);
     spindles.take(SpindleOn{1, 200}, true);
     tap = {0, -1};
@@ -239,7 +239,7 @@ TEST_F(SpindlesPart, ATapThatIsStoppedLeavesItOff) {
     EXPECT_EQ(rpm(), 300);
 }
 
-TEST_F(SpindlesPart, StatusTellsWhatEachDoes) {
+TEST_F(SpindlesPart, TheStatusShowsEachSpindle) {
     spindles.take(SpindleOn{1, -60}, true);
     in.spindle[1].isAtSpeed = false;
     rpm();
