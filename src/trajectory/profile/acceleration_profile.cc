@@ -62,8 +62,7 @@ void AccelerationProfile::take_limits(const Run &run) {
     }
     run_.add_joints(joint_curve_, accuracy, time_cells_.empty() ? start_s_ : time_cells_[0].c[0]);
     drivable_end_s_ = run_.has_stop ? run_.end_s : run_.end_s - reach_;
-    // The jerk that reaches full acceleration within one period defines the part of the limits that a seam
-    // uses.
+    // Without jerk limits, the rows of a seam use the jerk that reaches full acceleration within one period.
     const auto set_jerk = [&](Bounds &b) { b.jerk = b.acceleration / period_s_; };
     for (std::size_t j = 0; j < joint_curve_.joints(); ++j) {
         run_.joints.jerk[j] = run_.joints.acceleration[j] / period_s_;

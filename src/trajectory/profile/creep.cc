@@ -78,7 +78,7 @@ class Scales {
     }
     /// The scale at the end of a cell.
     double at(std::size_t knot) const noexcept { return at_[knot]; }
-    /// The least scale between two ends of cells.
+    /// The minimum scale between two knots.
     double least_between(std::size_t from, std::size_t to) const noexcept {
         return *std::min_element(at_.begin() + static_cast<long>(from),
                                  at_.begin() + static_cast<long>(std::min(to, at_.size() - 1)) + 1);
@@ -227,7 +227,7 @@ class CreepSpline {
             while (end < last && knots_[end] - knots_[k] < least) {
                 ++end;
             }
-            // The rest is a stretch, or belongs to this one.
+            // A rest that is too short for a separate stretch belongs to this stretch.
             k = knots_[last] - knots_[end] < least ? last : end;
             ends_.push_back(k);
         }
