@@ -238,9 +238,9 @@ Pose CurveBuilder::kept_in_room(const Pose &control, const Pose &mean) const noe
     }
     double part = 1;
     for (const Room::Row &row : room_.rows) {
-        const double from = geometry::dot(row.slope, mean), way = geometry::dot(row.slope, kept) - from;
-        const double room = way > 0 ? std::max(row.high - from, 0.0) : std::max(from - row.low, 0.0);
-        part = std::abs(way) > room ? std::min(part, room / std::abs(way)) : part;
+        const double from = geometry::dot(row.slope, mean), travel = geometry::dot(row.slope, kept) - from;
+        const double room = travel > 0 ? std::max(row.high - from, 0.0) : std::max(from - row.low, 0.0);
+        part = std::abs(travel) > room ? std::min(part, room / std::abs(travel)) : part;
     }
     return part < 1 ? mean + (kept - mean) * part : kept;
 }

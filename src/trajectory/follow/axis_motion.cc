@@ -22,9 +22,9 @@ double go(double &p, double &v, double a, double span, double dt) noexcept {
 
 /// Acceleration that stops exactly at the target if, because of rounding, `a` would pass it. Past the target
 /// may be past a soft limit.
-double fitted(double a, double way, double velocity) noexcept {
+double fitted(double a, double travel, double velocity) noexcept {
     constexpr double ROUNDING = 1e-9;
-    const double needed = way * velocity > 0 ? 0.5 * velocity * velocity / std::abs(way) : 0.0;
+    const double needed = travel * velocity > 0 ? 0.5 * velocity * velocity / std::abs(travel) : 0.0;
     return needed > a && needed <= a * (1.0 + ROUNDING) ? needed : a;
 }
 
@@ -37,33 +37,33 @@ double braking_distance(double v, double acceleration, double jerk) noexcept {
 
 /// The fastest motion over a distance to standstill: a change of speed, a cruise, a stop. Its direction is
 /// positive.
-struct WayPlan {
+struct TravelPlan {
     SpeedChange to_speed;
     double speed = 0, cruise_s = 0;
     SpeedChange to_rest;
 };
 
-WayPlan plan_way(const MotionState &from, double way, const MotionLimits &limits) noexcept {
+TravelPlan plan_travel(const MotionState &from, double travel, const MotionLimits &limits) noexcept {
     const auto distance = [&](double v) {
         return speed_change(from, v, limits.acceleration, limits.jerk).distance +
                braking_distance(v, limits.acceleration, limits.jerk);
     };
     double speed = limits.velocity;
-    double left = way - distance(speed);
+    double left = travel - distance(speed);
     if (left < 0) {
         // Above the speed at which the acceleration reaches 0, the distance increases with the speed. Below
         // that speed, the motion brakes less than it could.
         const double settled = std::clamp(settled_speed(from, limits.jerk), 0.0, limits.velocity);
-        const bool isAbove = distance(settled) <= way;
+        const bool isAbove = distance(settled) <= travel;
         const double low = isAbove ? settled : 0.0;
         const double span = (isAbove ? limits.velocity : settled) - low;
         // The search uses the cube root, because a short distance needs a low speed that is exact to the last
         // digit.
         const auto at = [&](double root) { return low + span * root * root * root; };
-        speed = at(highest_allowed(0.0, 1.0, [&](double root) { return distance(at(root)) <= way; }));
-        left = std::max(0.0, way - distance(speed));
+        speed = at(highest_allowed(0.0, 1.0, [&](double root) { return distance(at(root)) <= travel; }));
+        left = std::max(0.0, travel - distance(speed));
     }
-    WayPlan out;
+    TravelPlan out;
     out.to_speed = speed_change(from, speed, limits.acceleration, limits.jerk);
     out.speed = speed;
     out.cruise_s = speed > 0 ? left / speed : 0.0;
@@ -121,9 +121,9 @@ void AxisMotion::add_reach(double &low, double &high) const noexcept {
 
 void AxisMotion::add_stop(double &low, double &high) const noexcept {
     const SpeedChange stop = stopping();
-    const auto add = [&](double place) {
-        low = std::min(low, place);
-        high = std::max(high, place);
+    const auto add = [&](double point) {
+        low = std::min(low, point);
+        high = std::max(high, point);
     };
     add(position);
     add(position + stop.distance);
@@ -138,20 +138,20 @@ void AxisMotion::add_stop(double &low, double &high) const noexcept {
     }
 }
 
-void AxisMotion::end_at(double place) noexcept {
-    position = place;
+void AxisMotion::end_at(double point) noexcept {
+    position = point;
     velocity = acceleration = 0;
 }
 
 void AxisMotion::stop() noexcept {
-    const double place = rest();
+    const double point = rest();
     // A motion that already brakes to its target reaches the target, whatever the rounding error of the
     // distance.
     constexpr double CYCLES = 1e-3;
-    const bool isBehind = std::abs(place - target) <= CYCLES * std::abs(place - position) &&
-                          std::abs(place - position) > std::abs(target - position);
+    const bool isBehind = std::abs(point - target) <= CYCLES * std::abs(point - position) &&
+                          std::abs(point - position) > std::abs(target - position);
     if (!isBehind) {
-        target = brake_target_ = place;
+        target = brake_target_ = point;
         isBraking_ = velocity != 0.0 || acceleration != 0.0;
     }
 }
@@ -208,11 +208,11 @@ void AxisMotion::step(double dt) noexcept {
 }
 
 void AxisMotion::step_with_jerk(double dt) noexcept {
-    const double way = target - position;
-    const double side = way >= stopping().distance ? 1.0 : -1.0;
+    const double travel = target - position;
+    const double side = travel >= stopping().distance ? 1.0 : -1.0;
     MotionState state{0, side * velocity, side * acceleration};
-    const WayPlan plan =
-        plan_way(state, side * way, {std::max(0.0, max_velocity), max_acceleration, max_jerk});
+    const TravelPlan plan =
+        plan_travel(state, side * travel, {std::max(0.0, max_velocity), max_acceleration, max_jerk});
     const double time = plan.to_speed.duration + plan.cruise_s + plan.to_rest.duration;
     if (max_velocity > 0 && time <= dt * (1.0 + TIME_ROUNDING)) {
         end_at(target);

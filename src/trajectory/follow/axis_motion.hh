@@ -55,7 +55,7 @@ class AxisMotion {
     void brake(double dt) noexcept;
     void step_with_jerk(double dt) noexcept;
     void step_without_jerk(double dt) noexcept;
-    void end_at(double place) noexcept;
+    void end_at(double point) noexcept;
 
     /// a stop with the current limits is active, until the target differs from `brake_target_`
     bool isBraking_ = false;

@@ -59,27 +59,27 @@ void FollowPlanner::follow(double wanted, const FollowLimits &limits, double dt)
     }
     limit(motion_, limits);
     const double before = motion_.position;
-    const double place = std::clamp(wanted, std::min(limits.low, before), std::max(limits.high, before));
-    const Wanted now = wanted_at(place, limits, dt);
+    const double commanded = std::clamp(wanted, std::min(limits.low, before), std::max(limits.high, before));
+    const Wanted now = wanted_at(commanded, limits, dt);
     if (!take(now, limits, dt) && !pursue(now, limits, dt)) {
         // A motion that can stop within the range can also move to a position within the range.
-        motion_.target = place;
+        motion_.target = commanded;
         motion_.step(dt);
     }
     wanted_velocity_ = now.velocity;
-    wanted_ = place;
+    wanted_ = commanded;
     record(before, dt);
 }
 
 /// If the position moves faster than the velocity limit, it counts as a jump. If it accelerates too fast, its
 /// acceleration counts as 0.
-FollowPlanner::Wanted FollowPlanner::wanted_at(double place, const FollowLimits &limits,
+FollowPlanner::Wanted FollowPlanner::wanted_at(double commanded, const FollowLimits &limits,
                                                double dt) const noexcept {
     constexpr double SHARE = 0.5;  // part of the acceleration; the rest is for catching up
-    const double moved = (place - wanted_) / dt;
+    const double moved = (commanded - wanted_) / dt;
     const double velocity = std::abs(moved) <= limits.velocity ? moved : 0.0;
     const double rise = (velocity - wanted_velocity_) / dt;
-    return {place, velocity, std::abs(rise) <= SHARE * limits.acceleration ? rise : 0.0};
+    return {commanded, velocity, std::abs(rise) <= SHARE * limits.acceleration ? rise : 0.0};
 }
 
 void FollowPlanner::record(double before, double dt) noexcept {
@@ -91,8 +91,8 @@ void FollowPlanner::record(double before, double dt) noexcept {
 /// Moves to the position in this cycle, if the samples keep the limits and can follow the position
 /// afterwards.
 bool FollowPlanner::take(const Wanted &wanted, const FollowLimits &limits, double dt) noexcept {
-    const double place = wanted.place;
-    const double v = (place - motion_.position) / dt;
+    const double commanded = wanted.commanded;
+    const double v = (commanded - motion_.position) / dt;
     // Assumes the velocity of the position for the next cycle, and its acceleration after that.
     const std::array<double, 4> a{acceleration_, (v - velocity_) / dt,
                                   (wanted.velocity - v) / dt + wanted.acceleration, wanted.acceleration};
@@ -106,7 +106,7 @@ bool FollowPlanner::take(const Wanted &wanted, const FollowLimits &limits, doubl
         return false;
     }
     AxisMotion next = motion_;
-    next.position = next.target = place;
+    next.position = next.target = commanded;
     // The difference of two samples is the average velocity between them.
     next.velocity = v + 0.5 * a[1] * dt;
     next.acceleration = limits.jerk > 0 ? a[1] : 0.0;
@@ -123,10 +123,10 @@ bool FollowPlanner::take(const Wanted &wanted, const FollowLimits &limits, doubl
 /// Catches up: moves to standstill relative to the position, with its current velocity and acceleration.
 bool FollowPlanner::pursue(const Wanted &wanted, const FollowLimits &limits, double dt) noexcept {
     const double bend = limits.jerk > 0 ? wanted.acceleration : 0.0;
-    const double place = wanted.place;
+    const double commanded = wanted.commanded;
     const double speed = wanted.velocity;
     AxisMotion relative = motion_;
-    relative.position = motion_.position - (place - speed * dt);
+    relative.position = motion_.position - (commanded - speed * dt);
     relative.velocity = motion_.velocity - (speed - 0.5 * bend * dt);
     relative.acceleration = motion_.acceleration - bend;
     relative.target = 0;
@@ -135,10 +135,10 @@ bool FollowPlanner::pursue(const Wanted &wanted, const FollowLimits &limits, dou
     relative.max_acceleration = limits.acceleration - std::abs(bend);
     relative.step(dt);
     AxisMotion next = motion_;
-    next.position = place + relative.position;
+    next.position = commanded + relative.position;
     next.velocity = relative.velocity + speed + 0.5 * bend * dt;
     next.acceleration = relative.acceleration + bend;
-    next.target = place;
+    next.target = commanded;
     if (!hasStop(next, motion_, limits)) {
         return false;
     }

@@ -33,9 +33,9 @@ class FollowPlanner {
   private:
     /// The commanded position, with its velocity and acceleration in this cycle.
     struct Wanted {
-        double place, velocity, acceleration;
+        double commanded, velocity, acceleration;
     };
-    Wanted wanted_at(double place, const FollowLimits &limits, double dt) const noexcept;
+    Wanted wanted_at(double commanded, const FollowLimits &limits, double dt) const noexcept;
     bool take(const Wanted &wanted, const FollowLimits &limits, double dt) noexcept;
     bool pursue(const Wanted &wanted, const FollowLimits &limits, double dt) noexcept;
     void record(double before, double dt) noexcept;

@@ -82,14 +82,14 @@ double PassFollower::lowest_jerk(double low, double high, double dt) const noexc
 bool PassFollower::begin_stop(const PathStore &store, double jerk, double dt) noexcept {
     const PassLeg &last = store.leg(pass_.last);
     const double end = last.start_s + last.length;
-    const auto place = [&](double t) {
+    const auto end_of_stop = [&](double t) {
         const MotionState at = state_.after(jerk, t);
         return at.x + speed_change(at, 0, limits_.acceleration, limits_.jerk).distance;
     };
-    if (leg_ != pass_.last || place(dt) <= end) {
+    if (leg_ != pass_.last || end_of_stop(dt) <= end) {
         return false;
     }
-    const double t = highest_allowed(0, dt, [&](double after) { return place(after) <= end; });
+    const double t = highest_allowed(0, dt, [&](double after) { return end_of_stop(after) <= end; });
     state_ = state_.after(jerk, t);
     stop_.begin(speed_change(state_, 0, limits_.acceleration, limits_.jerk));
     stopping_ = true;

@@ -24,7 +24,7 @@ Overreach check_choice(const SpeedStretch &stretch, const AccelBound &bound,
         return {Kind::NO_ANSWER, 0};
     }
     double speed = stretch.speed;
-    double way = 0;
+    double total = 0;
     for (const ChosenPhase &phase : chosen) {
         const bool isNumber = std::isfinite(phase.length) && std::isfinite(phase.speed);
         if (!isNumber || phase.length < 0 || phase.speed < 0) {
@@ -34,7 +34,7 @@ Overreach check_choice(const SpeedStretch &stretch, const AccelBound &bound,
             return {Kind::TOO_FAST, phase.speed / stretch.cap};
         }
         if (phase.length > 0 && !(speed + phase.speed > 0)) {
-            return {Kind::NOT_THERE, way / stretch.length};
+            return {Kind::NOT_THERE, total / stretch.length};
         }
         const double change = std::abs(phase.speed * phase.speed - speed * speed);
         const double top = std::max(speed, phase.speed);
@@ -43,11 +43,11 @@ Overreach check_choice(const SpeedStretch &stretch, const AccelBound &bound,
         if (isOver(change, most + 2.0 * ROUNDING * stretch.cap * stretch.cap)) {
             return {Kind::TOO_HARD, phase.length > 0 ? change / most : HUGE_VAL};
         }
-        way += phase.length;
+        total += phase.length;
         speed = phase.speed;
     }
-    if (std::abs(way - stretch.length) > ROUNDING * stretch.length) {
-        return {Kind::NOT_THERE, way / stretch.length};
+    if (std::abs(total - stretch.length) > ROUNDING * stretch.length) {
+        return {Kind::NOT_THERE, total / stretch.length};
     }
     if (isOver(speed * speed, stretch.out * stretch.out + 2.0 * ROUNDING * stretch.cap * stretch.cap)) {
         return {Kind::TOO_LATE, stretch.out > 0 ? speed / stretch.out : HUGE_VAL};

@@ -36,7 +36,7 @@ double ramp_of(const Bounds &b) noexcept {
 }
 
 /// Distance over which the direction changes by the maximum for a cell.
-double turn_way(double direction, double bend) noexcept {
+double turn_distance(double direction, double bend) noexcept {
     return TURN_PER_CELL * std::sqrt(std::max(direction, 1e-4) / std::max(bend, 1e-30));
 }
 
@@ -106,7 +106,7 @@ RoughProfile::Node RoughProfile::node_at(const Run &run, std::size_t span, doubl
         curve_share = std::min(curve_share, (*run.feeds)[feed].curve_share);
     }
     node.ramp_s = std::min(node.ramp_s, ramp_of(b));
-    double turn_v = turn_way(direction, bend) / LEAST_CELL_S;
+    double turn_v = turn_distance(direction, bend) / LEAST_CELL_S;
     apply_joints(run, node, s + 1e-6 * ((*run.spans)[span].start_s + 0.5 * (*run.spans)[span].length - s),
                  turn_v);
     apply_velocity(node, fastest);
@@ -152,7 +152,7 @@ void RoughProfile::apply_joints(const Run &run, Node &node, double inside, doubl
         direction += p.first[j] * p.first[j];
         bend += p.second[j] * p.second[j];
     }
-    turn_v = std::min(turn_v, turn_way(direction, bend) / LEAST_CELL_S);
+    turn_v = std::min(turn_v, turn_distance(direction, bend) / LEAST_CELL_S);
 }
 
 const std::vector<RoughProfile::CellEnd> &RoughProfile::lay(const Run &run, const Stretch &stretch) {
@@ -179,8 +179,8 @@ bool RoughProfile::isInEnd(const Run &run, const Stretch &stretch, double s) noe
 double RoughProfile::next_place(const Run &run, const Stretch &stretch, const Span &span, double s) noexcept {
     const double rounding = rounding_at(s);
     double next = span.end_s();
-    const auto take = [&](double place) {
-        next = place > s + rounding && place < next - rounding ? place : next;
+    const auto take = [&](double candidate) {
+        next = candidate > s + rounding && candidate < next - rounding ? candidate : next;
     };
     for (int n = NODES_PER_SPAN - 1; n > 0; --n) {
         const double third = span.start_s + span.length * n / NODES_PER_SPAN;
@@ -286,9 +286,9 @@ void RoughProfile::lay_nodes(const Run &run, const Stretch &stretch) {
     if (nodes_.size() == 2) {
         // Between a start and a stop, one more node with a speed is needed.
         const Node &first = nodes_.front(), &last = nodes_.back();
-        const double way = 0.5 * (last.s - first.s), s = first.s + way;
+        const double half_length = 0.5 * (last.s - first.s), s = first.s + half_length;
         Node node = node_at(run, span_at(spans, s), first.s, s);
-        node.v = std::min(node.v, faster(first.v, way, node.acceleration, node.jerk));
+        node.v = std::min(node.v, faster(first.v, half_length, node.acceleration, node.jerk));
         nodes_.insert(nodes_.begin() + 1, node);
     }
     reaches_end_ = nodes_.back().s >= run.end_s - 2 * rounding_at(run.end_s);

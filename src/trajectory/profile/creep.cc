@@ -136,11 +136,11 @@ class Scales {
         for (std::size_t j = run_.joint_curve == nullptr ? 0 : run_.joint_curve->part_at(s);
              run_.joint_curve != nullptr && j < run_.joint_curve->parts().size(); ++j) {
             const curve::JointCurve::Part &part = run_.joint_curve->parts()[j];
-            const double way = std::max(0.0, part.start_s - s);
-            if (SPACING_GROWTH * way >= last) {
+            const double distance = std::max(0.0, part.start_s - s);
+            if (SPACING_GROWTH * distance >= last) {
                 break;
             }
-            last = std::min(last, scale_of_creep(least_, part.speed) + SPACING_GROWTH * way);
+            last = std::min(last, scale_of_creep(least_, part.speed) + SPACING_GROWTH * distance);
         }
         run_.each_cap(s, s + last / SPACING_GROWTH, [&](const SpeedCap &cap) {
             last =
@@ -195,9 +195,9 @@ class CreepSpline {
             const std::size_t behind = k + 1 < ends_.size() ? ends_[k + 1] : ends_.back() + CELLS_BEHIND;
             double d = scales_.least_between(before, behind);
             if (start != nullptr) {
-                const double way = middle(k) - middle(1), least = known - fall * way;
+                const double distance = middle(k) - middle(1), least = known - fall * distance;
                 is_reached = d >= least;
-                d = std::clamp(d, least, known + SPACING_GROWTH * way);
+                d = std::clamp(d, least, known + SPACING_GROWTH * distance);
             }
             const double v =
                 SHARE * std::min(std::cbrt(least_.jerk * d * d), std::sqrt(least_.acceleration * d));

@@ -122,7 +122,7 @@ TEST(AxisMotion, RandomTargetChangesKeepTheJerkLimit) {
 /// and d / V + V / A + A / J if both are reached.
 TEST(AxisMotion, ReachesItsTargetInTheLeastTimeWithAJerkLimit) {
     struct Move {
-        double way, seconds;
+        double distance, seconds;
     };
     constexpr double V = 50, A = 500, J = 10000;
     for (const Move &move : {Move{0.01, 4 * std::cbrt(0.01 / (2 * J))}, Move{40, 40 / V + V / A + A / J}}) {
@@ -130,13 +130,13 @@ TEST(AxisMotion, ReachesItsTargetInTheLeastTimeWithAJerkLimit) {
         p.max_velocity = V;
         p.max_acceleration = A;
         p.max_jerk = J;
-        p.target = move.way;
+        p.target = move.distance;
         int cycles = 0;
         for (; !p.isAtRest() && cycles < 10000; ++cycles) {
             p.step(T);
         }
-        EXPECT_EQ(p.position, move.way);
-        EXPECT_NEAR(cycles * T, move.seconds, 1.01 * T) << move.way;
+        EXPECT_EQ(p.position, move.distance);
+        EXPECT_NEAR(cycles * T, move.seconds, 1.01 * T) << move.distance;
     }
 }
 
