@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t PLANNER_CYCLES = 5;
 constexpr double LONGEST_STAND_S = 5, LONGEST_MOVE_S = 50 * Estimator::DRIVEN_S;
-/// A limit counts as binding when its use is at least this part of it.
+/// A limit counts as binding if the motion uses at least this fraction of it.
 constexpr double NEAR = 0.93;
 /// A move counts as limited by its feed if it takes at most this factor of the time at its feed.
 constexpr double AT_FEED = 1.02;

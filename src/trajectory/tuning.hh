@@ -35,9 +35,9 @@ struct TapTuning {
     /// LOST (a quarter of a revolution) the tap fails.
     static constexpr double MET = 1e-3, MET_STEPS = 2, LOST = 0.25;
     /// With jerk limits, a tap whose error would exceed MOST_OFF [rev] while the spindle reverses is
-    /// rejected. The change of speed is seen late, by LATE divided by the square of the measurement rate,
-    /// plus LATE_CYCLES squared servo periods (measured values). After a change, the tool is on the helix
-    /// again within SETTLING times A/J.
+    /// rejected. A change of the spindle acceleration is followed with a delay. Its square, halved, is LATE /
+    /// rate^2 + LATE_CYCLES * period^2 (measured values, with the rate of the measurement). After a change,
+    /// the tool is on the helix again within SETTLING times A/J.
     static constexpr double MOST_OFF = 0.1, LATE = 4, LATE_CYCLES = 10, SETTLING = 2;
     /// Distance between tool and thread before the spindle runs forward again [rev].
     static constexpr double CLEARANCE = 0.5;

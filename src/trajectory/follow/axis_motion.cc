@@ -145,7 +145,7 @@ void AxisMotion::end_at(double point) noexcept {
 
 void AxisMotion::stop() noexcept {
     const double point = rest();
-    // A motion that already brakes to its target reaches the target, whatever the rounding error of the
+    // A motion that already brakes to its target must reach it in spite of the rounding error of the
     // distance.
     constexpr double CYCLES = 1e-3;
     const bool isBehind = std::abs(point - target) <= CYCLES * std::abs(point - position) &&

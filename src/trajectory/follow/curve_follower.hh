@@ -22,8 +22,8 @@ class CurveFollower {
     void take(const CurvePlan &plan) noexcept;
     /// True if a plan that begins at standstill waits for its start.
     bool isWaiting() const noexcept { return waiting_.plan != 0 && waiting_.behind == 0; }
-    /// Advances the motion by `dt` [s], or starts a waiting plan, and updates the motion data of `state`. If
-    /// the state is held or dropping, the motion takes the next stop.
+    /// Advances the motion by `dt` [s], or starts a waiting plan, and updates the motion data of `state`.
+    /// During a hold or a drop, the motion takes the next stop.
     void step(const PathStore &store, double dt, Snapshot &state) noexcept;
     /// The current plan. A pass is controlled by the executor.
     const CurvePlan &plan() const noexcept { return plan_; }

@@ -11,7 +11,7 @@ namespace mw::trajectory {
 struct FollowLimits {
     double velocity = 0, acceleration = 0;
     double jerk = 0;           ///< [unit/s^3]; 0: no jerk limit
-    double low = 0, high = 0;  ///< range of the position; the coordinate does not leave it
+    double low = 0, high = 0;  ///< range of the position; from inside, the coordinate does not leave it
 };
 
 /// Call all functions in the servo thread only.

@@ -78,7 +78,7 @@ double PassFollower::lowest_jerk(double low, double high, double dt) const noexc
 }
 
 /// Begins the stop of the last leg if `jerk` would make the rest too short. The stop begins within the cycle,
-/// at the time that leads to the end of the leg.
+/// at the time after which it ends exactly at the end of the leg.
 bool PassFollower::begin_stop(const PathStore &store, double jerk, double dt) noexcept {
     const PassLeg &last = store.leg(pass_.last);
     const double end = last.start_s + last.length;

@@ -29,7 +29,7 @@ struct AccelBound {
         bound.alpha.fill(a);
         return bound;
     }
-    /// Lines through the values `left` at fixed fractions of the squared speed v^2.
+    /// Lines through the values `left`, which belong to fixed fractions of the squared speed v^2.
     static AccelBound through(const double (&left)[LINES + 1], double v) noexcept;
     /// Maximum path acceleration at the squared speed b; never negative.
     double at(double b) const noexcept {

@@ -54,7 +54,7 @@ class CurvePath {
     double programmed_s() const noexcept { return programmed_s_; }
     /// s at the end of the known spans.
     double known_s() const noexcept { return spans_.empty() ? 0.0 : spans_.back().end_s(); }
-    /// The first s after `s` where the motion stops whatever moves follow; 1e300: none.
+    /// The first s after `s` where the motion stops with any following moves; 1e300: none.
     double stop_behind(double s) const noexcept;
     /// The move at `s`. At the end of a move it is the next one.
     Sequence move_at(double s) const noexcept { return feeds_.move_at(s); }

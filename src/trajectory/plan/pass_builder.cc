@@ -18,7 +18,8 @@ constexpr double TURNING_A = 0.5, TURNING_J = 0.3, CROSS_J = 0.4;
 /// Fraction of the second line into which the corner may be shifted. The end of this line may be at a
 /// shoulder.
 constexpr double ROOM_SHARE = 0.95;
-/// A smaller change of the tangent is no corner. Lines whose tangents have a smaller cosine reverse.
+/// SAME_DIRECTION: a smaller change of the tangent is no corner. REVERSAL_COSINE: lines reverse if the cosine
+/// between their tangents is smaller.
 constexpr double SAME_DIRECTION = 1e-9, REVERSAL_COSINE = -0.999;
 constexpr double SMALLEST_CORNER = 1e-6;
 

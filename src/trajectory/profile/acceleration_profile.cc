@@ -100,8 +100,8 @@ AccelerationProfile::Ends AccelerationProfile::limited_b(std::size_t &feed,
     }
 }
 
-/// Adds cells for the motion of the window with the following stop, and for a stop that begins now. Speed
-/// limits may have been lowered, so that this stop may be longer.
+/// Adds cells for the motion of the window with the following stop. They also cover a stop that begins now,
+/// in case speed limits were lowered.
 void AccelerationProfile::lay(const State &from, double time_s) {
     cells_.drop_before(from.s + rounding_at(from.s));
     speed_.clear();
@@ -328,7 +328,8 @@ Stop AccelerationProfile::stop_from(const State &start) {
     while (true) {
         double stop_s = cell->end_s();
         double b = brake(*cell, from.b, stop_s);
-        // A plan that stops at the end of the known curve also ends there, except for rounding.
+        // If the plan itself stops at the end of the known curve, this stop also ends there, except for
+        // rounding.
         const bool is_last = k + 1 == speed_.size();
         if (is_last && b <= ROUNDING * start.b) {
             b = 0;

@@ -30,7 +30,7 @@ CapRest rest_of(const Run &run, double from, double to) noexcept {
             slowest = std::max(slowest, turn[i] / (TURN_SHARE * limit_of(run, i).jerk));
         }
     });
-    // Caps whose reaches overlap share the limit part for jumps of the tangent.
+    // Caps whose reaches overlap share the part of the limits for jumps of the tangent.
     rest.v2 = square(slowest);
     run.each_cap(from, to, [&](const SpeedCap &cap) {
         const double near = 1e-3 * (to - from);

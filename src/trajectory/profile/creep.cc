@@ -35,7 +35,7 @@ Bounds least_of(const Run &run) noexcept {
 /// Speed of a creep divided by the speed at which the path alone uses the jerk or the acceleration limit.
 constexpr double SHARE = 0.15;
 
-/// The scale of a path that alone uses a limit at the speed v.
+/// The scale of a path whose shape alone uses a limit at the speed v.
 double scale_of_creep(const Bounds &least, double v) noexcept {
     return std::max(std::sqrt(v * v * v / least.jerk), v * v / least.acceleration);
 }

@@ -273,7 +273,7 @@ bool Profile::slow_down(const Run &run, std::size_t fixed) {
     return true;
 }
 
-/// True if the end of the run is so near that the plan cannot stop there.
+/// True if the end of the run is so near that the planned motion does not take it into account.
 bool Profile::endsNear(const Run &run) const noexcept {
     if (!run.has_stop || run.end_s >= plan_.end_s) {
         return false;

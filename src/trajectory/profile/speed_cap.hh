@@ -39,7 +39,7 @@ SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, double perio
 SpeedCap cap_of(const curve::Seam &seam, const CurveLimits &limits, const JointMap *map,
                 const JointLimits &joints, double period_s) noexcept;
 
-/// Bound of the reach of a cap at the end of a curve, whatever curve follows.
+/// Bound of the reach of a cap at the end of a curve, for every curve that may follow.
 double largest_reach(const curve::CurvePoint &end, const CurveLimits &limits, double period_s) noexcept;
 
 /// False if the jumps are within rounding: they use a negligible part of the limits at every speed of the

@@ -42,8 +42,8 @@ bool make_direct_stop(const Motion &from, const Rates &rates, DirectStop &stop) 
 /// A direct stop that ends at `end_s`, with lower limits than `rates`. False if there is none.
 bool make_direct_stop_at(const Motion &from, const Rates &rates, double end_s, DirectStop &stop) noexcept;
 
-/// The remaining limits along the curve at a point, with the speed and acceleration of `at`: braking between
-/// `least` and `acceleration`, and a jerk, if it is not below 0.
+/// Limits of braking along the curve at a point, at the speed and acceleration of `at`: acceleration between
+/// `least` and `acceleration`, and jerk. If the jerk is negative, no braking is within the limits.
 Rates rates_at(const Run &run, const CurvePoint &point, const Motion &at) noexcept;
 
 }  // namespace mw::trajectory::profile

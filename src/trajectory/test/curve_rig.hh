@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Curves of programs whose path mode changes. Profiles time them from stop to stop while more of the curve
+// Curves of programs whose path mode changes. Profiles plan them from stop to stop while more of the curve
 // becomes known.
 #pragma once
 
@@ -128,7 +128,7 @@ struct DrivenCurve {
     bool is_done = false;
 };
 
-/// Times a curve that becomes known in parts.
+/// Plans a curve that becomes known in parts.
 class CurveDriver {
   public:
     CurveDriver(const LaidCurve &laid, const profile::CurveLimits &limits) : laid_(laid) {
