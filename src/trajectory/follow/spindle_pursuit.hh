@@ -10,7 +10,9 @@ namespace mw::trajectory {
 /// Current position, speed and acceleration of the helix along the path of the tool.
 using HelixState = MotionState;
 
-/// The tool approaches the helix in the least time. It uses the jerk after which the fastest change to the speed of the helix ends on the helix. Near the helix, the deviation decays critically damped, as soon as this is possible within the jerk limit. Realtime-safe.
+/// The tool approaches the helix in the least time. It uses the jerk after which the fastest change to the
+/// speed of the helix ends on the helix. Near the helix, the deviation decays critically damped, as soon as
+/// this is possible within the jerk limit. Realtime-safe.
 class SpindlePursuit {
   public:
     /// Begins a pursuit. `rate`: see following_rate. `met`: distance within which the tool counts as on the

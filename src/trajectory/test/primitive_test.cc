@@ -191,7 +191,8 @@ TEST(Extent, ContainsTheArcAndLittleMore) {
                 most[i] = std::max(most[i], q[i]);
             }
         }
-        // Between two points, an arc exceeds its chord by radius (step / 2)^2 / 2. The rounding error along the arc shifts an extreme, at most by the second term.
+        // Between two points, an arc exceeds its chord by radius (step / 2)^2 / 2. The rounding error along
+        // the arc shifts an extreme, at most by the second term.
         const double sweep = std::abs(p.omega) * p.length;
         const double step = sweep / POINTS;
         const double off = (std::abs(p.dradius) + geometry::norm_xyz(p.lin)) * p.length;
