@@ -28,7 +28,7 @@ struct MoveTag {
     bool isProbe = false;
     bool isProbeAway = false;       ///< probing move that triggers when contact is lost
     double requested_velocity = 0;  ///< feed along the feed length [unit/s]; 0: no feed, only the limits
-    double feed_ratio = 1;          ///< change of s per feed length
+    double feed_ratio = 1;          ///< length of the move in s, divided by its feed length
     double end_s = 0;               ///< end of the move on the programmed path
     Pose end;
 };
@@ -36,11 +36,11 @@ struct MoveTag {
 /// A tap along a line. x is 0 at the start and `depth` at the bottom [unit].
 struct TapTerms {
     double depth = 0;
-    double per_turn = 0;    ///< pitch: distance along x per revolution
+    double per_turn = 0;    ///< pitch: distance along x per revolution [unit]
     double back_scale = 1;  ///< spindle speed of the retract divided by that of the cut
-    double low = 0;         ///< lower limit of x
-    double high = 0;        ///< upper limit of x
-    double velocity = 0;    ///< maximum velocity along x
+    double low = 0;         ///< lower limit of x [unit]
+    double high = 0;        ///< upper limit of x [unit]
+    double velocity = 0;    ///< maximum velocity along x [unit/s]
     double acceleration = 0;
     double jerk = 0;
 };
@@ -50,7 +50,7 @@ struct PassLeg {
     double start_s = 0, length = 0;
     double turns = 0;  ///< revolutions from the start of the pass to the start of the leg
     double per_unit_in = 0, per_unit_out = 0;  ///< revolutions per unit at the start and at the end
-    double v_most = 0;                         ///< maximum speed
+    double v_most = 0;                         ///< maximum speed along the curve [1/s]
     double v_out = 0;                          ///< maximum speed at its end that the rest of the pass allows
     /// Revolutions since the start of the pass, and revolutions per unit, at position `s` of the leg.
     double turns_at(double s) const noexcept;
@@ -64,7 +64,7 @@ struct Pass {
     double start_s = 0, end_s = 0;
     int spindle = 0;
     double direction = 1;     ///< -1: the spindle runs in reverse
-    double acceleration = 0;  ///< maximum acceleration along the curve, on all legs
+    double acceleration = 0;  ///< maximum acceleration along the curve, on all legs [1/s^2]
     double jerk = 0;
     bool is_tap = false;  ///< a tap along the line of the first move and back to its start; it has no legs
     TapTerms tap;

@@ -14,7 +14,7 @@ struct Trouble {
 };
 
 struct PlannerSettings {
-    double period_s = 1e-3;           ///< servo period
+    double period_s = 1e-3;           ///< servo period [s]
     std::uint64_t latency = 3;        ///< servo cycles from the snapshot for a plan to the start of this plan
     SpeedChooser *chooser = nullptr;  ///< planner module that chooses speeds; null: none; must remain valid
     /// For the estimator: no hold or abort can occur, so a plan has only its last stop.
@@ -56,11 +56,14 @@ class Planner {
     /// No move follows now: the last move is planned to its end.
     void release_end() noexcept;
 
+    /// Sets overrides, the maximum velocity and spindle speeds.
     void set_scales(const Scales &scales) noexcept;
     /// Opens the gate before a gated move. Call it when the executor waits there. The motion begins `delay_s`
     /// after the earliest possible time.
     void open_gate(Sequence move, double delay_s) noexcept;
+    /// True if the start of the move is delayed to a full revolution of its spindle.
     bool isPhased(Sequence move) const noexcept { return path_.move(move).request.isPhased; }
+    /// Number of the spindle of the move.
     int spindle_of(Sequence move) const noexcept { return path_.move(move).request.spindle; }
     /// True if the executor locks the move to the spindle angle. The moves up to the next stop belong to it.
     bool isLocked(Sequence move) const noexcept { return conditions_.isLocked(path_.move(move).request); }
@@ -69,10 +72,13 @@ class Planner {
     /// Speed that the pass from this move on needs at the current spindle speed, divided by the maximum speed
     /// of the machine and the operator.
     double pass_load(Sequence move) const noexcept { return plan::pass_load(path_, conditions_, move); }
+    /// True if the move is the cut of a rigid tap.
     bool isTap(Sequence move) const noexcept { return path_.move(move).request.isTap; }
+    /// Checks whether the tap that begins with `move` is possible at the current spindle speed.
     TapVerdict check_tap(Sequence move) const noexcept {
         return plan::check_tap({path_.primitive(move), path_.move(move).request, conditions_});
     }
+    /// Sets the braking data of the spindles and the resolutions of their encoders [rev].
     void set_spindles(const std::array<SpindleBrakings, MAX_SPINDLES> &brakings,
                       const std::array<double, MAX_SPINDLES> &encoder_steps) noexcept {
         conditions_.brakings = brakings;
@@ -98,6 +104,7 @@ class Planner {
     bool isStarving() const noexcept { return curve_.isStarving(); }
     /// Returns why the path does not continue. Each reason is returned once.
     Trouble take_trouble() noexcept;
+    /// Number of moves that are not complete.
     std::uint32_t moves_left(const Snapshot &now) const noexcept;
 
   private:

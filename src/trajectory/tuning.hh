@@ -17,7 +17,7 @@ struct LineJointTuning {
     static constexpr double STEP = 0.02;
     /// Relative error of a joint position by rounding or by an iterative inverse.
     static constexpr double ROUNDING = 1e-12;
-    /// Factor from differences to bounds of the derivatives.
+    /// Factor that makes bounds of the derivatives from their differences.
     static constexpr double MARGIN = 1.01;
     /// Part of acceleration and jerk that the curvature of the joint paths may use at maximum speed. The tool
     /// needs the rest to follow the spindle.

@@ -28,7 +28,7 @@ struct ExecutorOutput {
     double velocity = 0;  ///< speed along the parameter of the path [1/s]
     Sequence move = 0;    ///< current move; 0: none
     bool isMoving = false;
-    double distance_to_go = 0;  ///< distance to the end of the current move
+    double distance_to_go = 0;  ///< distance to the end of the current move, in the unit of s
     bool isOnProbe = false;
     TapDemand tap;
 };

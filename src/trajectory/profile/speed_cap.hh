@@ -20,7 +20,7 @@ namespace mw::trajectory::profile {
 
 struct SpeedCap {
     double s = 0;
-    double v = 1e300;      ///< maximum speed
+    double v = 1e300;      ///< maximum speed along the curve [1/s]
     bool is_stop = false;  ///< a stop is needed: the run ends here
     /// Distance on both sides within which the smooth part has only the rest of the limits.
     double reach = 0;
