@@ -62,6 +62,7 @@ double set_joint_rows(const Run &run, const curve::JointPoint &point, const MapP
                      q3 = point.third[j] * m1 * m1 * m1 + 3 * point.second[j] * m1 * m.second +
                           point.first[j] * m.third;
         to.rows.set(to.place, to.first + j, row_of(q1, q2, q3, l, rest.bend[i] * m1 * m1));
+        to.between.take(q3, l);
         v2 = std::max(v2, square(q1 / l.velocity));
     }
     return v2;

@@ -91,8 +91,8 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
     const Bounds &xyz = run.limits.xyz;
     const curve::JointCurve *joints = run.joint_curve;
     const std::size_t joint_count = joints == nullptr ? 0 : joints->joints();
-    rows.begin(static_cast<std::size_t>(std::popcount(moving)) + joint_count,
-               xyz.acceleration < UNLIMITED_BOUND || xyz.jerk < UNLIMITED_BOUND);
+    const std::size_t coordinates = static_cast<std::size_t>(std::popcount(moving)) + joint_count;
+    rows.begin(coordinates + 1, xyz.acceleration < UNLIMITED_BOUND || xyz.jerk < UNLIMITED_BOUND);
     std::size_t span = span_at(spans, map.at(knots[0]).s);
     std::size_t feed = run.feed_at(map.at(knots[0]).s);
     std::array<MapPoint, PLACES> places;
@@ -120,6 +120,7 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
             const ParameterPoint point = by_parameter(c, m);
             double joint_v2 = 0;
             std::size_t n = 0;
+            BetweenRow between;
             for (std::size_t i = 0; i < geometry::AXIS_COUNT; ++i) {
                 if ((moving >> i & 1U) == 0) {
                     continue;
@@ -127,11 +128,13 @@ void make_rows(const Run &run, const RestMap &map, const double *knots, std::siz
                 const Bounds l = left_of(run.limits.axes[i], rest, i);
                 const double q1 = point.q[0][i], q2 = point.q[1][i], q3 = point.q[2][i];
                 rows.set(p, n++, row_of(q1, q2, q3, l, rest.bend[i] * m.first * m.first));
+                between.take(q3, l);
             }
             if (joint_count > 0) {
                 const curve::JointPoint point_j = joints->point_at(joints->part_at(inside), m.s);
-                joint_v2 = set_joint_rows(run, point_j, m, rest, {rows, p, n});
+                joint_v2 = set_joint_rows(run, point_j, m, rest, {rows, p, n, between});
             }
+            rows.set(p, coordinates, between.row(h));
             if (rows.hasNorm()) {
                 rows.set_norm(p, norm_row(point, left_of(xyz, rest, XYZ_NORM),
                                           rest.bend[XYZ_NORM] * m.first * m.first));

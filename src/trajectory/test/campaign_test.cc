@@ -89,6 +89,12 @@ TEST(Campaign, AProgramThatNeedsManyPlanningAttemptsContinues) {
     EXPECT_EQ(asked.driven, 1);
 }
 
+TEST(Campaign, AnAxisThatReversesBesideFasterOnesKeepsItsJerkLimit) {
+    Asked asked;
+    check(1031U, true, asked, Kind::LONG, 3);
+    EXPECT_EQ(asked.driven, 1);
+}
+
 TEST(Campaign, RandomProgramsKeepJerkLimits) {
     check_all(true, Kind::RANDOM, 8);
 }
