@@ -19,6 +19,9 @@ constexpr double TURN_PER_CELL = 0.2;
 constexpr double CELLS_PER_RAMP = 10, CELLS_PER_SPAN = 6;
 /// Minimum number of cells in the time of a start with constant jerk, because the map changes there.
 constexpr double CELLS_PER_START = 25;
+/// Maximum relative change of the speed in a cell. The jerk limit along the parameter is J/sqrt(b), which is
+/// far from linear in a cell if the speed changes by more.
+constexpr double CHANGE_PER_CELL = 0.3;
 /// Minimum and maximum time of a cell [s], maximum time of a cell if joints are not axes [s], maximum
 /// relative change of this time from cell to cell.
 constexpr double LEAST_CELL_S = 5e-4, MOST_CELL_S = 1e-2, MOST_JOINT_CELL_S = 2e-3, CELL_GROWTH = 0.04;
@@ -315,6 +318,15 @@ void RoughProfile::size_cells(const Run &run, const Stretch &stretch) {
             LEAST_CELL_S, most_s);
         if (isInRamp(run, stretch, n.s)) {
             n.cell_s = std::clamp(n.rest_s / CELLS_PER_START, LEAST_CELL_S, n.cell_s);
+        }
+    }
+    for (std::size_t i = 1; i < nodes_.size(); ++i) {
+        Node &a = nodes_[i - 1], &b = nodes_[i];
+        const double change = CHANGE_PER_CELL * (b.t - a.t) / std::max(std::abs(b.v - a.v), 1e-300);
+        for (Node *n : {&a, &b}) {
+            if (n->v > 0) {
+                n->cell_s = std::max(std::min(n->cell_s, change * n->v), LEAST_CELL_S);
+            }
         }
     }
     for (std::size_t i = 1; i < nodes_.size(); ++i) {

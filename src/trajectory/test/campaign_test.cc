@@ -91,8 +91,10 @@ TEST(Campaign, AProgramThatNeedsManyPlanningAttemptsContinues) {
 
 TEST(Campaign, AnAxisThatReversesBesideFasterOnesKeepsItsJerkLimit) {
     Asked asked;
-    check(1031U, true, asked, Kind::LONG, 3);
-    EXPECT_EQ(asked.driven, 1);
+    for (const double seconds : {3.0, 6.5}) {
+        check(1031U, true, asked, Kind::LONG, seconds);
+    }
+    EXPECT_EQ(asked.driven, 2);
 }
 
 TEST(Campaign, RandomProgramsKeepJerkLimits) {
