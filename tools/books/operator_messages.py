@@ -36,7 +36,7 @@ AREAS = (
     ('Start and end of the machine', 'start', ('programs/start', 'src/runtime', 'src/base/diagnostics')),
     ('Programs: run, check, doctor, screen, setup', 'programs', ('programs/doctor', 'programs/run', 'programs/screen', 'programs/setup', 'src/clients/screen', 'src/base/options')),
     ('halcompile and HAL tools', 'hal_tools', ('src/hal/halcompile', 'src/hal/tools')),
-    ('Drives and servers of remote clients', 'servers', ('programs/mains', 'programs/remote', 'programs/publish', 'programs/shop', 'src/clients/offers', 'src/clients/publish', 'src/clients/screen/offered_programs.cc', 'src/clients/shop')),
+    ('Drives and servers of remote clients', 'servers', ('programs/mains', 'programs/remote', 'programs/publish', 'programs/shop', 'src/clients/offers', 'src/clients/publish', 'src/clients/screen/files/offered_programs.cc', 'src/clients/shop')),
 )
 HOLE = '…'
 # Clients search for its words, so it is in no catalogue (texts.NEVER).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Translates texts of the machine, which are English: a text is found by the fixed parts of the message. The
-// rules are those of src/language/catalogue; po/cases.json tests both.
+// rules are those of src/base/language/catalogue; po/cases.json tests both.
 
 interface Pattern {
   pieces: string[]; // fixed parts of the key, between the values
