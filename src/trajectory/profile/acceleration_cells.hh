@@ -46,7 +46,7 @@ class AccelerationCells {
     /// Fraction of a limit by which it may be exceeded between the ends of a cell.
     static constexpr double BETWEEN = 2e-3;
     /// Approximate maximum time of a cell [s].
-    static constexpr double CELL_S = 2e-3;
+    static constexpr double CELL_S = 1e-3;
 
     /// Removes all cells. The next cell begins at `s`.
     void begin(double s) noexcept;

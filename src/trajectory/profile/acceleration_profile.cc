@@ -10,7 +10,7 @@ namespace mw::trajectory::profile {
 namespace {
 
 /// Maximum time of a cell [s]. A new plan or a stop begins at the start of a cell.
-constexpr double MOST_CELL_S = AccelerationCells::CELL_S;
+constexpr double MOST_CELL_S = 2 * AccelerationCells::CELL_S;
 /// Time of the first cell from standstill, in servo periods. So a stop that is requested in the first period
 /// begins in the second.
 constexpr double FIRST_CELL = 1.2;
@@ -141,7 +141,11 @@ void AccelerationProfile::lay(const State &from, double time_s) {
             // The maximum speed without braking for the path after it.
             const double a = cell.is_straight ? cell.least : cells_.range(cell, b).high;
             const double next = std::clamp(b + 2 * a * cell.length, 0.0, speed_[k][1]);
-            t += 2 * cell.length / std::max(std::sqrt(b) + std::sqrt(next), 1e-12);
+            // In a straight cell it reaches the limit and stays there.
+            const double rise =
+                cell.is_straight ? std::clamp((next - b) / (2 * a), 0.0, cell.length) : cell.length;
+            const double v = std::sqrt(next);
+            t += 2 * rise / std::max(std::sqrt(b) + v, 1e-12) + (cell.length - rise) / std::max(v, 1e-12);
             b = next;
             is_braking = t > time_s;
         }
@@ -286,8 +290,11 @@ bool AccelerationProfile::plan(const Run &run, std::size_t fixed) {
             return is_complete_ && end_s_ <= drivable_end_s_ ? true : stop_soon(from, fixed);
         }
         time_cells_.resize(fixed);
-        const bool is_all = cell_at(speed_.size() - 1).end_s() >= drivable_end_s_;
-        if (pass_forward(from) >= window_s_ || is_all || is_farthest) {
+        const double laid_end_s = cell_at(speed_.size() - 1).end_s();
+        const bool is_all = laid_end_s >= drivable_end_s_;
+        // A stop at the end of the cells is behind the window.
+        const bool is_full = pass_forward(from) >= window_s_ && end_s_ < laid_end_s;
+        if (is_full || is_all || is_farthest) {
             return true;
         }
     }

@@ -164,6 +164,26 @@ TEST(AccelerationProfile, BrakesAtOnceForALowerSpeedLimit) {
     samples.expect_within_limits(path);
 }
 
+TEST(AccelerationProfile, HasAStopBehindAWindowThatEndsNearTheEndOfALine) {
+    for (double length = 1; length < 6; length += 0.01) {
+        SCOPED_TRACE(length);
+        std::vector<Primitive> lines;
+        Pose at;
+        for (const double part : {length, 0.5, 0.5, 200.0}) {
+            Pose to = at;
+            to[0] += part;
+            lines.push_back(make_line(at, to));
+            at = to;
+        }
+        const ExactRun path(lines, 10);
+        AccelerationProfile profile(0.35, PERIOD);
+        profile.begin(0);
+        ASSERT_TRUE(profile.plan(path.run, 0));
+        ASSERT_FALSE(profile.isComplete());
+        EXPECT_FALSE(profile.stop(path.run, profile.cells(), StopEffort::QUICK).cells.empty());
+    }
+}
+
 TEST(AccelerationProfile, PlansAShortCurveBetweenStops) {
     const ExactRun path({circle(1000, 1e-6)}, 50);
     AccelerationProfile profile(WINDOW_S, PERIOD);

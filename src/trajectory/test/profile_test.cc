@@ -307,7 +307,7 @@ TEST(Profile, LimitsACoordinateThatBeginsToMoveSmoothly) {
     const std::vector<double> knots{0.4, 0.6};
     Rows rows;
     make_rows(line.run, map, knots.data(), 1, rows);
-    EXPECT_EQ(rows.coordinates(), 2U);
+    EXPECT_EQ(rows.coordinates(), 3U);
 }
 
 /// A feed that ends within rounding of the stop must not cause a second point with speed 0.
