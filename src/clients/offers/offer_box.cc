@@ -18,6 +18,7 @@
 
 #include "base/atomic_file.hh"
 #include "base/temporary_file.hh"
+#include "base/text.hh"
 #include "clients/offers/json_fields.hh"
 
 namespace mw::offers {
@@ -80,6 +81,15 @@ nlohmann::json json_of(const Entry &entry) {
             {"job", entry.isJob}};
 }
 
+State read_state(Fields &fields, const char *name) {
+    const std::string text = fields.text(name);
+    const auto state = state_of(text);
+    if (!state.has_value()) {
+        fields.set_problem(fmt::format("the state {} is unknown", printable(text)));
+    }
+    return state.value_or(State::SENT);
+}
+
 Entry read_entry(Fields &fields) {
     Entry entry{.name = fields.text("name"),
                 .from = fields.text("from"),
@@ -90,14 +100,18 @@ Entry read_entry(Fields &fields) {
                 .files = {},
                 .received = static_cast<TimeMs>(fields.whole("received", 0, LAST_TIME_MS)),
                 .standing = {.id = fields.text("id"),
-                             .state = state_of(fields.text("state")).value_or(State::SENT),
+                             .state = read_state(fields, "state"),
                              .at = static_cast<TimeMs>(fields.whole("at", 0, LAST_TIME_MS)),
                              .by = fields.text("by"),
                              .reason = fields.text("reason")},
-                .noted = state_of(fields.text("noted")).value_or(State::SENT),
+                .noted = read_state(fields, "noted"),
                 .isJob = fields.boolean("job")};
     for (const nlohmann::json &file : fields.list("files", MOST_FILES)) {
-        entry.files.push_back(file.is_string() ? file.get<std::string>() : "");
+        if (!file.is_string()) {
+            fields.set_problem("a file has no name");
+            break;
+        }
+        entry.files.push_back(file.get<std::string>());
     }
     if (!isOfferId(entry.standing.id)) {
         fields.set_problem("\"id\" is not the id of an offer");

@@ -187,6 +187,23 @@ TEST_F(OfferBoxTest, ReportsADamagedIndexAndKeepsIt) {
     EXPECT_TRUE(hasText(1));
 }
 
+TEST_F(OfferBoxTest, ReportsAnUnknownStateAndAFileWithoutAName) {
+    ASSERT_TRUE(box_->take(offer(1), NOW).has_value());
+    const std::string index = read_file(folder_ + "/index").value();
+    for (const auto &[from, to, why] :
+         {std::array<std::string, 3>{"\"state\": \"received\"", "\"state\": \"lost\"",
+                                     "the state lost is unknown"},
+          {"\"a.ngc\"", "7", "a file has no name"}}) {
+        const std::size_t at = index.find(from);
+        ASSERT_NE(at, std::string::npos) << index;
+        std::string changed = index;
+        std::ofstream(folder_ + "/index") << changed.replace(at, from.size(), to);
+        const auto found = box_->entries();
+        ASSERT_FALSE(found.has_value());
+        EXPECT_NE(found.error().message.find(why), std::string::npos) << found.error().message;
+    }
+}
+
 TEST_F(OfferBoxTest, RejectsAChangedText) {
     ASSERT_TRUE(box_->take(offer(1), NOW).has_value());
     ASSERT_TRUE(write_file_atomically(folder_ + '/' + id_of(1) + ".json", encode(offer(2))).has_value());
