@@ -37,7 +37,7 @@ async function unplug(): Promise<void> {
     (window as unknown as Faked).pad = null;
   });
 }
-async function stands(): Promise<boolean> {
+async function isStopped(): Promise<boolean> {
   const [x, y] = [rig.position(0), rig.position(1)];
   await sleep(150);
   return x === rig.position(0) && y === rig.position(1);
@@ -59,18 +59,18 @@ afterAll(async () => {
 
 it('moves while button and stick are held, and stops when either is released', async () => {
   await set(false, [1, 0, 0, 0]);
-  expect(await stands()).toBe(true);
+  expect(await isStopped()).toBe(true);
   await set(false, [0, 0, 0, 0]);
   await set(true, [0, 0, 0, 0]);
   await set(true, [0.9, 0, 0, 0]);
   await until(() => rig.position(0) > 3, 'X moves');
   await set(true, [0.1, 0, 0, 0]);
-  await until(stands, 'a stand');
+  await until(isStopped, 'the stop of X');
   const x = rig.position(0);
   await set(true, [0, 0.9, 0, 0]);
   await until(() => rig.position(1) < -3, 'a stick towards the operator moves Y back');
   await set(false, [0, 0.9, 0, 0]);
-  await until(stands, 'a stand');
+  await until(isStopped, 'the stop of X');
   expect(rig.position(0)).toBe(x);
 }, 60_000);
 
@@ -82,7 +82,7 @@ it('moves slower with less', async () => {
   await set(true, [0, -0.6, 0, 0]);
   await untilText(page, 'velocity', /^15\d\d\b/);
   await set(false, [0, 0, 0, 0]);
-  await until(stands, 'a stand');
+  await until(isStopped, 'the stop of X');
 }, 60_000);
 
 it('ends when the pad is gone, or the window loses the attention, and begins by itself no more', async () => {
@@ -93,9 +93,9 @@ it('ends when the pad is gone, or the window loses the attention, and begins by 
     await set(true, [-0.9, 0, 0, 0]);
     await until(() => rig.position(0) < before - 2, 'X moves');
     await end();
-    await until(stands, 'a stand');
+    await until(isStopped, 'the stop of X');
     await set(true, [-0.9, 0, 0, 0]);
-    expect(await stands()).toBe(true);
+    expect(await isStopped()).toBe(true);
   }
 }, 60_000);
 
@@ -104,16 +104,16 @@ it('does nothing in another view, nor when it is switched off', async () => {
   await page.getByTestId('pad-on').uncheck();
   await set(true, [0, 0, 0, 0]);
   await set(true, [0.9, 0, 0, 0]);
-  expect(await stands()).toBe(true);
+  expect(await isStopped()).toBe(true);
   await page.getByTestId('pad-on').check();
-  expect(await stands()).toBe(true); // the stick is off centre
+  expect(await isStopped()).toBe(true); // the stick was not released
   await page.setViewportSize({ width: 390, height: 844 });
   await page.getByTestId('tab-path').click();
   for (const [hold, x] of [[false, 0], [true, 0], [true, 0.9]] as const) {
     await put(hold, [x, 0, 0, 0]);
     await sleep(80); // the page does not poll in this view
   }
-  expect(await stands()).toBe(true);
+  expect(await isStopped()).toBe(true);
   expect(await text(page, 'run-state')).toBe('Idle');
   expect(errorsOf(page)).toEqual([]);
 }, 60_000);

@@ -26,7 +26,7 @@ enum class State : std::uint8_t {
     LOCK,  ///< requests a locking indexer to lock
     COUNT,
 };
-/// In the table it stands for every state but IDLE.
+/// In the table, a row with it applies to every state except IDLE.
 inline constexpr State UNDER_WAY = State::COUNT;
 
 enum class Failure : std::uint8_t {

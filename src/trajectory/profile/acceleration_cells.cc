@@ -23,10 +23,6 @@ constexpr double STRAIGHT = 1e-6;
 constexpr double CURVE_ACCELERATION = 1 - AccelerationCells::BETWEEN, STRAIGHT_ACCELERATION = 1 - STRAIGHT;
 constexpr double CURVE_VELOCITY = 0.999;
 
-double square(double x) noexcept {
-    return x * x;
-}
-
 /// The norm divided by a fraction of its limit.
 Norm within(const Norm &n, double share) noexcept {
     const double scale = 1 / square(share);

@@ -18,10 +18,6 @@ constexpr double FIRST_CELL = 1.2;
 /// by rounding, and within a cell.
 constexpr double ROUNDING = 1e-6, WITHIN_CELL = 5e-3;
 
-double square(double x) noexcept {
-    return x * x;
-}
-
 /// The motion with constant acceleration from a point to the squared speed `b` after `length`. Its duration
 /// is 0 if the speed is 0 or the length is within rounding.
 TimeCell cell_between(const MotionPoint &from, double b, double length) noexcept {
@@ -142,8 +138,9 @@ void AccelerationProfile::lay(const State &from, double time_s) {
             const double a = cell.is_straight ? cell.least : cells_.range(cell, b).high;
             const double next = std::clamp(b + 2 * a * cell.length, 0.0, speed_[k][1]);
             // In a straight cell it reaches the limit and stays there.
-            const double rise =
-                cell.is_straight ? std::clamp((next - b) / (2 * a), 0.0, cell.length) : cell.length;
+            const double rise = cell.is_straight
+                                    ? std::clamp((next - b) / std::max(2 * a, 1e-300), 0.0, cell.length)
+                                    : cell.length;
             const double v = std::sqrt(next);
             t += 2 * rise / std::max(std::sqrt(b) + v, 1e-12) + (cell.length - rise) / std::max(v, 1e-12);
             b = next;

@@ -8,10 +8,6 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-double square(double x) noexcept {
-    return x * x;
-}
-
 Bounds limit_of(const Run &run, std::size_t i) noexcept {
     return i < JOINTS_AT ? bounds_of(run.limits, i) : bounds_of(run.joints, i - JOINTS_AT);
 }

@@ -11,10 +11,6 @@ namespace mw::trajectory::profile {
 
 namespace {
 
-double square(double x) noexcept {
-    return x * x;
-}
-
 /// A point of the curve, with its derivatives by the parameter.
 struct ParameterPoint {
     std::array<std::array<double, geometry::AXIS_COUNT>, 3> q{};

@@ -10,10 +10,6 @@ namespace {
 
 constexpr double LEAST = 1e-30;
 
-double square(double x) noexcept {
-    return x * x;
-}
-
 }  // namespace
 
 double PointLimits::largest(const Values &q, double norm2) const noexcept {

@@ -84,6 +84,9 @@ struct Run {
 /// Index of the span at s.
 std::size_t span_at(const std::vector<Span> &spans, double s) noexcept;
 /// Rounding error of a length along the programmed path, which is a sum of lengths.
+constexpr double square(double x) noexcept {
+    return x * x;
+}
 inline double rounding_at(double s) noexcept {
     return 1e-12 * std::max(1.0, std::abs(s));
 }
